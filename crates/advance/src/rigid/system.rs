@@ -7,8 +7,10 @@
 use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::ForceLaw;
 use crate::rigid::books::counts::Counts;
-use crate::rigid::books::ledger::{Ledger, write_ledger};
-use crate::rigid::books::report::{ContactChanges, Handled, ImpactReport, RowForce, row_forces};
+use crate::rigid::books::forces::row_forces;
+use crate::rigid::books::ledger::Ledger;
+use crate::rigid::books::report::{ContactChanges, Handled, ImpactReport, RowForce};
+use crate::rigid::books::works::write_ledger;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::events::establish;
 use crate::rigid::event::handling::{finish, handle, happen};

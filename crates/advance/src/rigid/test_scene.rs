@@ -3,7 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::bodies::flyer::FlightLaw;
 use crate::rigid::event::rooms::Rooms;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::rigid::parts::{BodyPart, RigidParts};
 use crate::rigid::settings::{RigidSettings, StepControl};
 use crate::rigid::system::RigidSystem;

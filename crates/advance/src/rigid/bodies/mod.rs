@@ -4,6 +4,7 @@
 pub(super) mod assembly;
 pub(super) mod by_body;
 pub(super) mod flyer;
+pub(super) mod instant;
 pub(super) mod law;
 pub(super) mod laws;
 pub(super) mod path;

@@ -2,10 +2,10 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::flyer::Flyer;
-use crate::rigid::books::Books;
+use crate::rigid::books::all::Books;
 use crate::rigid::books::report::ImpactReport;
 use crate::rigid::group::dynamics::body_state;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::time::Time;
 use halfgap_collision::BodyId;
 

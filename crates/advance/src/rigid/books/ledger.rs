@@ -1,10 +1,6 @@
 //! The ledger of energy: its changes in events and steps, by cause.
 
-use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::books::Books;
-use crate::rigid::group::group::Work;
-use crate::rigid::group::groups::Groups;
-use crate::time::Time;
+use crate::rigid::group::state::Work;
 
 /// Changes of energy [J] since the start by cause, each negative where energy was lost.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,28 +25,5 @@ impl Ledger {
             Work::Law(law) => self.laws[law] += value,
             Work::Damping => self.damping += value,
         }
-    }
-}
-
-/// Writes the energy ledger at a time within the present segments over `ledger`, whose buffer is used again.
-pub(crate) fn write_ledger(
-    assembly: &Assembly,
-    groups: &Groups,
-    books: &Books,
-    time: Time,
-    ledger: &mut Ledger,
-) {
-    let Ledger { impacts, captures, projections, interventions, damping, ref laws } = books.ledger;
-    let mut room = std::mem::take(&mut ledger.laws);
-    room.clone_from(laws);
-    *ledger = Ledger { impacts, captures, projections, interventions, damping, laws: room };
-    for group in groups.by_leader.iter().flatten() {
-        let offset = time.since(group.start);
-        for (&work, path) in group.works.iter().zip(group.work_paths()) {
-            ledger.book(work, path.value_at(offset));
-        }
-    }
-    for body in assembly.bodies() {
-        ledger.damping += assembly.damping_loss(body, time);
     }
 }

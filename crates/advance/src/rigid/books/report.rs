@@ -1,19 +1,9 @@
 //! Reports that callers may ask for: forces of rows, contacts that begin and end.
 
-use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::books::Books;
-use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
-use crate::rigid::group::groups::Groups;
-use crate::rigid::group::physics::physics;
-use crate::rigid::held::settling::Settling;
-use crate::rigid::region::region::Region;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Moving};
+use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId};
 use halfgap_geometry::FeatureId;
 
 /// Force of one held row: a contact, or one direction of a connector.
@@ -66,6 +56,13 @@ pub struct ContactChanges {
     pub end: Vec<RowForce>,
 }
 
+impl Told {
+    /// Drops rows that end only to begin at once.
+    pub(crate) fn drop_continued(&mut self) {
+        self.changes.drop_continued(&mut self.goes_on);
+    }
+}
+
 impl ContactChanges {
     /// True if nothing begins or ends.
     #[must_use]
@@ -98,98 +95,6 @@ impl ContactChanges {
         });
         let mut flags = goes_on.iter();
         begin.retain(|_| flags.next() != Some(&true));
-    }
-}
-
-/// Evaluates the forces of all held rows at a time within the present segments. Allocates.
-#[must_use]
-pub(crate) fn row_forces(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    groups: &Groups,
-    time: Time,
-) -> Vec<RowForce> {
-    let mut stage = groups.stage.clone();
-    let mut found = Vec::new();
-    for group in groups.by_leader.iter().flatten() {
-        let (start, mut group) = (group.start, group.clone());
-        let mut dynamics =
-            Dynamics { physics: physics(assembly, connectors), group: &mut group, stage: &mut stage, start };
-        dynamics.evaluate_at(time.since(start));
-        let rows = group.rows.iter().zip(&stage.forces);
-        found.extend(rows.map(|(row, &force)| row_force(assembly, connectors, row, &stage.movings, force)));
-    }
-    found
-}
-
-fn row_force(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    row: &HeldRow,
-    movings: &[Moving],
-    force: f64,
-) -> RowForce {
-    let (point, normal) = mechanism(assembly, connectors).locate(row, movings);
-    let (connector, features) = match row.source {
-        RowSource::Connector(id, _) => (Some(id), None),
-        RowSource::Contact(features) => (None, Some(features)),
-    };
-    RowForce { bodies: row.bodies, connector, features, point, normal, force, bouncing: None }
-}
-
-/// Notes the unilateral rows of a group that is cut, with their forces at the cut.
-pub(crate) fn note_ends(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    groups: &Groups,
-    books: &mut Books,
-    group: &Group,
-) {
-    for (row, &force) in group.rows.iter().zip(&group.end_forces).filter(|(row, _)| !row.bilateral) {
-        let told = row_force(assembly, connectors, row, &groups.stage.movings, force);
-        books.told.changes.end.push(told);
-    }
-}
-
-/// Notes the unilateral rows that are held from now on.
-pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Region, settling: &Settling) {
-    for (index, row) in settling.held.iter().filter(|(_, row)| !row.bilateral) {
-        let told = RowForce {
-            bouncing: bouncing(assembly, books, region, settling),
-            ..told_of(&region.records[*index], row)
-        };
-        books.told.changes.begin.push(told);
-    }
-    books.told.changes.drop_continued(&mut books.told.goes_on);
-}
-
-/// Duration [s] of the bounces that a single contact which was just captured would have gone on to make.
-///
-/// After an impact at the speed v each flight lasts 2 v/a, and v falls by e each time: 2 e v/(a (1 - e)) in all.
-fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Settling) -> Option<f64> {
-    let ([record], Some(acceleration)) = (region.records.as_slice(), settling.closing_acceleration()) else {
-        return None;
-    };
-    let impact =
-        books.told.last_impact.rows.first().filter(|_| books.told.last_impact.time == assembly.now)?;
-    let elasticity = record.response.elasticity;
-    let closing = (-impact.rate_before).max(0.0);
-    (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
-}
-
-fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
-    let features = match row.source {
-        RowSource::Contact(features) => Some(features),
-        RowSource::Connector(..) => None,
-    };
-    RowForce {
-        bodies: row.bodies,
-        connector: record.connector(),
-        features,
-        point: record.geometry.point_primary,
-        normal: record.geometry.normal,
-        force: record.response.force.unwrap_or(0.0),
-        bouncing: None,
     }
 }
 

@@ -1,8 +1,8 @@
 //! TODO
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::ends::end_rooms;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::end_rooms;
 use crate::rigid::settings::RigidSettings;
 use halfgap_collision::{BodyId, Collision, ConnectorId, ConnectorKind};
 

@@ -5,8 +5,8 @@
 //! distance that was left before the stop tells them apart.
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::ends::{RailEnd, end_rooms};
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::{RailEnd, end_rooms};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{ConnectorId, ConnectorKind, RailHint};

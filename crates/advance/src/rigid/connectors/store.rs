@@ -2,12 +2,10 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::by_body::ByBody;
-use crate::rigid::search::predictions::LONGEST_SPAN;
-use crate::rigid::zeno::repeats::is_same_time;
+use crate::rigid::bodies::instant::is_same_time;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Motion, MotionBounds, Moving,
-    RailHint, Rope,
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Moving, RailHint, Rope,
 };
 
 /// All connectors with their states, and lists of them by body.
@@ -175,16 +173,6 @@ pub(crate) fn slack_of(assembly: &Assembly, sample: &ConnectorSample) -> f64 {
     let touches = sample.gap <= assembly.settings.tolerances.accuracy;
     let rests = touches && sample.kinematics.rate <= assembly.rest_speed();
     if rests { assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 }
-}
-
-/// Rough time [s] in which the ends of a rope, as they move now, go as far as the rope is long.
-pub(crate) fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
-    let turning = a.angular_speed * rope.point_a.length() + b.angular_speed * rope.point_b.length();
-    let speed = a.velocity.largest_difference(&b.velocity) + turning;
-    let acceleration = a.acceleration.largest_difference(&b.acceleration);
-    let by_speed = if speed > 0.0 { rope.length / speed } else { LONGEST_SPAN };
-    let by_acceleration = if acceleration > 0.0 { (rope.length / acceleration).sqrt() } else { LONGEST_SPAN };
-    by_speed.min(by_acceleration).min(LONGEST_SPAN)
 }
 
 /// True for a rope.

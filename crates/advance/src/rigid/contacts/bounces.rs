@@ -15,7 +15,6 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::pairs::{PairId, Pairs, Seen};
 use crate::rigid::contacts::touch::Touch;
-use crate::rigid::region::region::Region;
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
 
@@ -32,16 +31,24 @@ const LOW_GAPS: f64 = 10.0;
 /// Number of low bounces in a row after which elasticity no longer acts.
 const MOST_LOW: u32 = 1000;
 
-/// Remembers the gaps and rates of the contacts of a region, whose bodies have their new velocities. `fired_open`
-/// tells that the contact which caused the event fired although it did not close.
-pub(crate) fn note_seen(assembly: &Assembly, pairs: &mut Pairs, region: &Region, fired_open: bool) {
-    for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+/// Remembers the gaps [m] and rates [m/s] of features that touch, whose bodies have their new velocities. `fired` is the
+/// contact that caused the event, if one did, and whether it fired although it did not close.
+pub(crate) fn note_seen(
+    assembly: &Assembly,
+    pairs: &mut Pairs,
+    touching: impl Iterator<Item = (Touch, (f64, f64))>,
+    fired: Option<(Touch, bool)>,
+) {
+    for (touch, (gap, rate)) in touching {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
         let before = pairs.seen(pair).iter().find(|old| old.features == touch.features);
         let low = before.map_or(0, |before| low_bounces(assembly, before, gap));
         let formed = before.map_or(gap, |before| before.formed.max(gap));
         let goes_on = || before.is_some_and(|before| before.fires_open);
-        let fires_open = if region.cause.fired() == Some(*touch) { fired_open } else { goes_on() };
+        let fires_open = match fired {
+            Some((fired, is_open)) if fired == touch => is_open,
+            _ => goes_on(),
+        };
         let fires_open = fires_open && gap < assembly.settings.tolerances.target_gap;
         let fresh = Seen { features: touch.features, time: assembly.now, gap, formed, rate, low, fires_open };
         let seen = pairs.seen_mut(pair);
@@ -64,10 +71,10 @@ fn low_bounces(assembly: &Assembly, seen: &Seen, gap: f64) -> u32 {
     if is_low { seen.low.saturating_add(u32::from(seen.rate > assembly.rest_speed())) } else { 0 }
 }
 
-/// True if contacts of a region close fast, and each of them has stayed within the target zone since it was last
+/// True if some of the given contacts close fast, and each of these has stayed within the target zone since it was last
 /// seen.
-pub(crate) fn bounces_low(assembly: &Assembly, pairs: &Pairs, region: &Region) -> bool {
-    let mut fast = region.records.iter().filter(|record| closes_fast(record)).peekable();
+pub(crate) fn bounces_low(assembly: &Assembly, pairs: &Pairs, records: &[Collision]) -> bool {
+    let mut fast = records.iter().filter(|record| closes_fast(record)).peekable();
     fast.peek().is_some() && fast.all(|record| is_low_bounce(assembly, pairs, record))
 }
 

@@ -1,17 +1,18 @@
 //! TODO
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::impacts::{Booking, book_impact};
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::error::AdvanceError;
-use crate::rigid::event::events::{Booking, book_impact};
+use crate::rigid::event::resolving::resolve_impact;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settle::accelerations_of;
 use crate::rigid::impact::corners::{Corner, corners, take_side, take_slower};
-use crate::rigid::impact::impacts::{Manner, resolve_impact};
+use crate::rigid::impact::impacts::Manner;
 use crate::rigid::region::records::remeasure;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use glam::DVec2;
 use halfgap_collision::{Collision, ConnectorId};
 
@@ -35,7 +36,12 @@ pub(crate) fn leave_loose_corner(rooms: &mut Rooms, work: &mut EventWork) -> Res
         let opening = if opens {
             rates
         } else {
-            accelerations_of(&rooms.assembly, &rooms.groups, work, corner.records)
+            accelerations_of(
+                &rooms.assembly,
+                &rooms.groups,
+                (&work.region, &mut work.settling),
+                corner.records,
+            )
         };
         take_slower(&rooms.assembly, &mut rooms.connectors, &mut work.region, corner, opening);
     }

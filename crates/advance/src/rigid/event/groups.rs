@@ -12,11 +12,11 @@ use crate::rigid::event::life::{drop_group, is_unwatched, start_group};
 use crate::rigid::event::members::Members;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::brief::{BRIEF, BRIEFEST, CUT_SHARE};
-use crate::rigid::group::group::{Group, Work};
 use crate::rigid::group::groups::{Groups, group_of, put_group};
-use crate::rigid::group::stiff::Stiffness;
+use crate::rigid::group::state::{Group, Work};
+use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use halfgap_collision::{BodyId, ConnectorId};
 
 /// Makes groups of the bodies of a region that held rows or force laws couple; the others stay in flight.

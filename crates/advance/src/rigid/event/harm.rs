@@ -4,14 +4,14 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::error::AdvanceError;
-use crate::rigid::event::events::settle_and_still;
 use crate::rigid::event::groups::regroup;
 use crate::rigid::event::life::undo_groups;
 use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::settling::settle_and_still;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settle::HASTY_SHARE;
 use crate::rigid::region::records::remeasure;
-use crate::rigid::region::region::{Region, measure_touches};
+use crate::rigid::region::touching::{Region, measure_touches};
 
 /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
 /// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
@@ -83,7 +83,7 @@ mod tests {
     use crate::rigid::event::work::EventWork;
     use crate::rigid::held::settle::settle;
     use crate::rigid::region::collecting::collect_region;
-    use crate::rigid::region::region::measure_touches;
+    use crate::rigid::region::touching::measure_touches;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::BodyId;
 

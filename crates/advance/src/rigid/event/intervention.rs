@@ -1,20 +1,19 @@
 //! TODO
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::books::Books;
+use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, interrupt};
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::cutting::cut_groups;
-use crate::rigid::event::events::{collect_again, collide};
+use crate::rigid::event::impacting::{collect_again, collide};
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::parts::{FINITE, keep_to};
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::search::neighbourhood::Neighbourhood;
-use crate::rigid::zeno::memory::Zeno;
+use crate::rigid::zeno::memory::{Recent, Zeno};
 use crate::rigid::zeno::pace::forget_paces;
-use crate::rigid::zeno::storms::Recent;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};

@@ -2,7 +2,7 @@
 
 use crate::rigid::connectors::corners::{pass_joints_beside, stop_in_corner};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::event::events::handle_impact;
+use crate::rigid::event::impacting::handle_impact;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::region::cause::Cause;

@@ -2,9 +2,9 @@
 
 use crate::rigid::agenda::{Agenda, Source};
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::books::Books;
+use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, note_kinetic_energy};
-use crate::rigid::books::report::note_ends;
+use crate::rigid::books::forces::note_ends;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::mechanism;
 use crate::rigid::error::AdvanceError;
@@ -13,10 +13,12 @@ use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::attempt::StepFailure;
 use crate::rigid::group::brief::Past;
 use crate::rigid::group::dynamics::{body_state, set_body_state};
-use crate::rigid::group::group::Group;
 use crate::rigid::group::groups::{Groups, part, put_group, with_group};
-use crate::rigid::region::region::Region;
+use crate::rigid::group::state::Group;
+use crate::rigid::region::touching::Region;
 use crate::rigid::search::neighbourhood::Neighbourhood;
+use crate::rigid::watch::extending::extend_watched;
+use crate::rigid::watch::releases::look_for_release;
 use crate::rigid::zeno::pace::{names_of_laws, note_pace};
 use crate::rigid::zeno::repeats::has_pulled;
 use halfgap_collision::{BodyId, BodyState};
@@ -155,9 +157,9 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
     let next_step = group.next_step;
     let mut outcome =
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
-            dynamics.extend_watched(tools)
+            extend_watched(dynamics, tools)
         });
-    if outcome.is_err() && group.stiffness.is_stiff {
+    if outcome.is_err() && group.stiffness.is_stiff() {
         group.next_step = next_step;
         group.leave_stiffness(rooms.assembly.settings.method);
         outcome = with_group(
@@ -165,7 +167,7 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
             &rooms.connectors,
             &mut rooms.groups,
             &mut group,
-            |dynamics, tools| dynamics.extend_watched(tools),
+            |dynamics, tools| extend_watched(dynamics, tools),
         );
     }
     rooms.books.counts.segments += 1;
@@ -195,7 +197,7 @@ pub(crate) fn look_further(
     leader: BodyId,
 ) {
     let Some(mut group) = groups.take(leader) else { return };
-    with_group(assembly, connectors, groups, &mut group, |dynamics, _| dynamics.look_for_release());
+    with_group(assembly, connectors, groups, &mut group, |dynamics, _| look_for_release(dynamics));
     agenda.set(Source::Group(leader), group.due());
     put_group(assembly, connectors, groups, group);
 }

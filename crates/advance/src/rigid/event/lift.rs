@@ -10,7 +10,7 @@ use crate::rigid::group::groups::Groups;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::lift::Lift;
 use crate::rigid::region::records::remeasure;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use crate::rigid::sinking::depth::Sinking;
 use glam::DVec2;
 use halfgap_collision::BodyState;

@@ -3,7 +3,7 @@
 
 use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use halfgap_collision::BodyId;
 
 /// Pairs of a group's root, which is a place in the region, and an index, both ascending.

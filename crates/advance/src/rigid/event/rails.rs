@@ -4,9 +4,9 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism};
 use crate::rigid::group::dynamics::body_state;
-use crate::rigid::group::group::Group;
 use crate::rigid::group::groups::Groups;
-use crate::rigid::region::region::Region;
+use crate::rigid::group::state::Group;
+use crate::rigid::region::touching::Region;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, RailHint};
 

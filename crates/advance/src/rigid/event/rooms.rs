@@ -5,7 +5,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::Snapshot;
 use crate::rigid::bodies::laws::Laws;
-use crate::rigid::books::Books;
+use crate::rigid::books::all::Books;
 use crate::rigid::books::counts::Counts;
 use crate::rigid::books::ledger::Ledger;
 use crate::rigid::books::report::Told;
@@ -82,7 +82,7 @@ impl Rooms {
 
     /// A look at all rooms.
     pub(crate) fn view(&self) -> View<'_> {
-        let Self { assembly, connectors, sinking, pairs, search, groups, zeno, books, .. } = self;
-        View { assembly, connectors, sinking, pairs, search, groups, zeno, books }
+        let Self { assembly, connectors, sinking, pairs, search, groups, .. } = self;
+        View { assembly, connectors, sinking, pairs, search, groups }
     }
 }

@@ -15,7 +15,7 @@ use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::{AdvanceError, Between};
-use crate::rigid::event::events::handle_impact;
+use crate::rigid::event::impacting::handle_impact;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::with_work::with_work;
 use crate::rigid::region::cause::Cause;

@@ -3,7 +3,7 @@
 use crate::rigid::books::report::ImpactReport;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::lift::Lift;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_contact::Impact;
 

@@ -1,11 +1,11 @@
 //! One accepted step of a group: lengths are tried until the step errs by little enough.
 
 use crate::ode::{Accepted, Method, Point, Stepper, is_kept};
-use crate::rigid::group::brief::Stepping;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::energy::Energy;
-use crate::rigid::group::group::Group;
 use crate::rigid::group::segment::LONGEST_STEP;
+use crate::rigid::group::state::Group;
+use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
 

@@ -2,9 +2,9 @@
 //! half as many stages. It serves where a higher order gains little: between events that follow each other fast (brief
 //! steps), and over the kinks of a spline with many points. Implicit steps are in `stiff`.
 
-use crate::ode::{Method, Stepper};
-use crate::rigid::group::group::Group;
-use crate::rigid::group::stiff::Stiffness;
+use crate::rigid::group::state::Group;
+use crate::rigid::group::stepping::{BRIEF_METHOD, Stepping};
+use crate::rigid::group::stiffness::Stiffness;
 use crate::time::Time;
 
 /// A group is expected to last this multiple of the time that the last groups of its bodies lasted, and is brief if a
@@ -20,46 +20,6 @@ pub(crate) const CUT_SHARE: f64 = 0.6;
 
 /// A group stays brief while the errors of its steps allow them to grow by this factor.
 const BRIEF_GROWTH: f64 = 1.9;
-
-/// The method of brief steps.
-const BRIEF_METHOD: Method = Method::DormandPrince5;
-
-/// Stepper by which the steps of a group are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stepping {
-    /// That of the method asked for.
-    Asked,
-    /// That of the method with few stages.
-    Brief,
-    /// The implicit one.
-    Stiff,
-}
-
-/// The steppers of a system.
-#[derive(Clone, Debug)]
-pub(crate) struct Steppers {
-    asked: Stepper,
-    brief: Stepper,
-    stiff: Stepper,
-}
-
-impl Steppers {
-    pub(crate) fn new(method: Method) -> Self {
-        Self {
-            asked: Stepper::new(method),
-            brief: Stepper::new(BRIEF_METHOD),
-            stiff: Stepper::new(Method::RadauIia5),
-        }
-    }
-
-    pub(crate) fn of(&mut self, stepping: Stepping) -> &mut Stepper {
-        match stepping {
-            Stepping::Asked => &mut self.asked,
-            Stepping::Brief => &mut self.brief,
-            Stepping::Stiff => &mut self.stiff,
-        }
-    }
-}
 
 /// Experience with the last group of a body, from which its next group starts.
 #[derive(Clone, Copy, Debug, Default)]

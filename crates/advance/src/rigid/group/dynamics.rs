@@ -5,11 +5,11 @@
 
 use crate::ode::Ode;
 use crate::rigid::bodies::flyer::Flyer;
-use crate::rigid::bodies::law::{ForceLaw, Wrench, Wrenches};
+use crate::rigid::bodies::law::{Wrench, Wrenches};
 use crate::rigid::contacts::rows::{HeldRow, RowMoment, RowSource, moving_of};
-use crate::rigid::group::group::{Group, Work};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::samples::Samples;
+use crate::rigid::group::state::{Group, Work};
 use crate::rigid::settings::ExtraAcceleration;
 use crate::time::Time;
 use glam::DVec2;

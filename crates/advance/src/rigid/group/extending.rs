@@ -6,7 +6,6 @@
 use crate::ode::StiffnessEstimate;
 use crate::rigid::group::attempt::StepFailure;
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::SegmentEnd;
 use crate::rigid::group::tools::Tools;
 
 /// Number of shorter steps that are tried if a step has an excess above 1.
@@ -20,63 +19,13 @@ const DEEP: f64 = 4.0;
 /// A shorter step is worthwhile if it leaves less than this fraction of the excess of the one before.
 const WORTHWHILE: f64 = 0.5;
 
-/// Time before a change of a law's branch at which a step ends, in ticks of the clock.
-const TICKS_BEFORE_SWITCH: f64 = 64.0;
-/// Factor by which that time grows where the change then turns out to come earlier.
-const WIDER: f64 = 8.0;
-/// Largest number of steps that are tried before a change.
-const MOST_APPROACHES: usize = 8;
-
 impl Dynamics<'_> {
-    /// Extends the group by a step, and finds the event that ends it early.
-    pub(crate) fn extend_watched(&mut self, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
-        if !self.group.is_unwatched {
-            let proposed = self.group.next_step;
-            let told = self.extend_on_rows(tools)?;
-            self.note_stiffness(tools, told);
-            self.find_event();
-            return self.end_before_switch(tools, proposed);
-        }
-        let told = self.extend_unwatched(tools)?;
-        self.note_stiffness(tools, told);
-        self.limit_next_step(tools.stepper.method().step_factor(0.0));
-        (self.group.event, self.group.look) = (None, None);
-        // Of projected ends only rounding is left, so the gaps of the last evaluation tell.
-        let is_projected = tools.settings.projection;
-        self.group.largest_error = if is_projected { self.stage.gap_error } else { self.connector_error() };
-        Ok(())
-    }
-
-    /// Makes a step over a change of a law's branch anew, so that it ends just before the change. Stages beyond it have
-    /// the forces of another branch: with them a step may err by any amount, unseen by its error estimate, and so may its
-    /// dense output, by which the change was found. The next step is then as long as this one was `proposed` [s] to be.
-    fn end_before_switch(&mut self, tools: &mut Tools<'_>, proposed: Option<f64>) -> Result<(), StepFailure> {
-        if self.group.laws.is_empty() || !tools.stepper.method().is_adaptive() {
-            return Ok(());
-        }
-        let mut before = self.clock_ticks(TICKS_BEFORE_SWITCH);
-        for _ in 0..MOST_APPROACHES {
-            let Some((offset, SegmentEnd::Switch)) = self.group.event else { break };
-            if offset <= 2.0 * before {
-                break;
-            }
-            self.group.next_step = Some(offset - before);
-            self.extend_on_rows(tools)?;
-            self.find_event();
-            if let (Some(next), Some(proposed)) = (&mut self.group.next_step, proposed) {
-                *next = next.max(proposed);
-            }
-            before *= WIDER;
-        }
-        if self.group.event.is_none() {
-            self.group.event = self.find_switch_at_end().map(|offset| (offset, SegmentEnd::Switch));
-        }
-        Ok(())
-    }
-
     /// Extends the group by a step whose dense output, if it is asked for, does not oscillate. Near a bifurcation point
     /// of a loop the step keeps to its rows and its energy, too.
-    fn extend_unwatched(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
+    pub(crate) fn extend_unwatched(
+        &mut self,
+        tools: &mut Tools<'_>,
+    ) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let mut tries = 0;
         loop {
             let energy = self.extend(tools)?;
@@ -105,7 +54,10 @@ impl Dynamics<'_> {
 
     /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not
     /// oscillate: shorter steps are tried until one does. Returns the stiffness, if it was estimated.
-    fn extend_on_rows(&mut self, tools: &mut Tools<'_>) -> Result<Option<StiffnessEstimate>, StepFailure> {
+    pub(crate) fn extend_on_rows(
+        &mut self,
+        tools: &mut Tools<'_>,
+    ) -> Result<Option<StiffnessEstimate>, StepFailure> {
         let steps = tools.settings.steps;
         let is_free = !tools.settings.projection || !tools.stepper.method().is_adaptive();
         let (mut proposed, mut before) = (None, f64::INFINITY);

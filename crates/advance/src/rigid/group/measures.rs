@@ -2,7 +2,7 @@
 
 use crate::ode::Stepper;
 use crate::rigid::group::dynamics::{Dynamics, body_state};
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
 use glam::DVec2;

@@ -3,7 +3,7 @@
 
 use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use glam::DVec2;
 use halfgap_geometry::Pose;
 
@@ -83,6 +83,7 @@ mod tests {
     use crate::rigid::event::rooms::Rooms;
     use crate::rigid::group::groups::with_group;
     use crate::rigid::test_scene::{block_on_its_corner, resting_discs};
+    use crate::rigid::watch::extending::extend_watched;
     use glam::DVec2;
     use halfgap_collision::{BodyId, Moving};
 
@@ -94,7 +95,7 @@ mod tests {
             let at = dynamics.group.velocities();
             (dynamics.group.state[at], dynamics.group.state[at + 2]) = (0.7, 0.3);
             dynamics.set_out();
-            dynamics.extend_watched(tools).expect("it slides");
+            extend_watched(dynamics, tools).expect("it slides");
             let middle = 0.5 * dynamics.group.span;
             dynamics.place_at(middle);
             let placed = dynamics.stage.movings.clone();

@@ -4,8 +4,8 @@
 //! force, and projections converge more slowly.
 
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
 use crate::rigid::group::measures::ROUNDING_SHARE;
+use crate::rigid::group::state::Group;
 use crate::rigid::settings::StepControl;
 
 /// Largest number of Newton steps of one projection.

@@ -1,11 +1,11 @@
 //! A group's segment: its start, the repetition of its step up to an event, its dense output. The step itself is made
 //! in `attempt`, its end moved onto the held rows in `projection`.
 
-use crate::ode::{Point, SegmentPolynomial, Stepper};
+use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
 use crate::rigid::contacts::rows::RowSource;
-use crate::rigid::group::brief::Stepping;
 use crate::rigid::group::dynamics::{Dynamics, body_state};
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
+use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
 
 /// Upper bound [s] of all steps: beyond it the clock resolves no motion.
@@ -132,5 +132,27 @@ impl Dynamics<'_> {
         self.group.paths.extend(places.map(|place| [0, 1, 2].map(|k| path(3 * place + k))));
         self.group.rate_paths = rates;
         (self.group.state, self.group.end_state, self.group.end_rates) = (state, end, end_rates);
+    }
+}
+
+impl Dynamics<'_> {
+    /// Evaluates the forces of the rows at an offset [s] of the segment, and leaves them in the stage.
+    pub(crate) fn evaluate_at(&mut self, offset: f64) {
+        self.find_state_at(offset);
+        let trial = std::mem::take(&mut self.stage.trial);
+        let mut rates = std::mem::take(&mut self.stage.trial_rates);
+        rates.resize(trial.len(), 0.0);
+        if self.group.tree.is_used() {
+            self.find_rates(offset, &trial, &mut rates, Self::hang_and_tell);
+        } else {
+            let Ok(()) = self.derivative(offset, &trial, &mut rates);
+        }
+        (self.stage.trial, self.stage.trial_rates) = (trial, rates);
+    }
+
+    /// A number [s] of ticks of the clock at the end of the segment.
+    pub(crate) fn clock_ticks(&self, count: f64) -> f64 {
+        let span = self.group.span;
+        count * f64::EPSILON * (self.start.seconds() + span).abs().max(span)
     }
 }

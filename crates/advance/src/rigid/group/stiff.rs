@@ -6,9 +6,10 @@
 //! is held up if that rate times its length comes near the stability limit of the method.
 
 use crate::ode::{Method, Point, StiffnessEstimate};
-use crate::rigid::group::brief::Stepping;
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
+use crate::rigid::group::stepping::Stepping;
+use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::group::tools::Tools;
 use glam::DVec2;
 
@@ -48,46 +49,6 @@ const PROBE: f64 = 1e6;
 /// Least fraction of the last probe's rate that a probe may find: less is taken for a direction in which forces vary
 /// little.
 const FADING: f64 = 0.9;
-
-/// Experience with the fastest rate of a group.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Stiffness {
-    /// Steps are implicit.
-    pub(crate) is_stiff: bool,
-    /// Implicit steps have served before.
-    is_known: bool,
-    /// The fastest rate [1/s], as last estimated.
-    rate: f64,
-    /// The rate [1/s] of the steepest forces by probes, where rounding of positions may matter; estimates from short
-    /// steps do not show it. 0 where it does not matter.
-    steep: f64,
-    /// Number of such probes, which tells the direction of the next.
-    probes: u32,
-    /// Number of held-up steps less that of others, at least 0.
-    held_up: u32,
-    /// Number of steps until the next estimate.
-    wait: u32,
-    /// Length [s] of the last step with an estimate.
-    looked: f64,
-    /// Cost that implicit steps have saved so far, in explicit steps; negative if they cost more.
-    saved: f64,
-    /// Number of times that implicit steps were given up since they last saved something.
-    in_vain: u32,
-}
-
-impl Stiffness {
-    /// The more telling experience of two, for bodies that come to share their steps.
-    pub(crate) fn or(self, other: Self) -> Self {
-        let first_tells = (self.is_known, self.rate) >= (other.is_known, other.rate);
-        let told = if first_tells { self } else { other };
-        Self { in_vain: self.in_vain.max(other.in_vain), ..told }
-    }
-
-    /// True if the fastest rate allows an explicit step of a length [s].
-    pub(crate) fn allows(&self, step: f64) -> bool {
-        self.rate * step < 1.0
-    }
-}
 
 /// Cost of an implicit step for a number of state components, in explicit steps.
 fn cost(numbers: usize) -> f64 {

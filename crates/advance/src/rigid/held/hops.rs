@@ -7,17 +7,9 @@
 //! the target zone.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::books::Books;
-use crate::rigid::connectors::corners::stays_in_corner;
-use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::bounces::closes_fast;
-use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::contacts::rows::row_of;
-use crate::rigid::event::events::{Booking, book_impact};
-use crate::rigid::event::work::EventWork;
-use crate::rigid::impact::impacts::{conclude_impact, set_rows};
-use crate::rigid::region::records::remeasure;
-use crate::rigid::region::region::Region;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::touching::Region;
 use halfgap_collision::{BodyId, Collision};
 
 /// Height of a low hop, as a fraction of the half-width of the target zone (`accuracy`), however far its bodies move.
@@ -73,56 +65,15 @@ pub(crate) fn opens(assembly: &Assembly, record: &Collision) -> bool {
 }
 
 /// True if any held contact opens.
-pub(crate) fn any_held_hops(assembly: &Assembly, work: &EventWork) -> bool {
-    let records = &work.region.records;
-    work.settling.held.iter().any(|&(index, _)| opens(assembly, &records[index]))
-}
-
-/// Gives the bodies of held contacts that open in low hops the velocities that they will have after the landing,
-/// and lets contacts leave that open all the same. False if nothing is changed.
-///
-/// The impulse of each held contact until the landing follows from its force. These impulses are taken away, so
-/// that the hops come down at once, and an impact without elasticity returns as much of them as is needed. So a
-/// contact is stopped by no more than what presses on it: where normals hardly differ, large impulses that cancel
-/// each other would also stop a body that slides over the contacts.
-pub(crate) fn still_hops(
-    assembly: &mut Assembly,
-    connectors: &Connectors,
-    pairs: &Pairs,
-    books: &mut Books,
-    work: &mut EventWork,
-) -> bool {
-    // At the start some contacts may be about to collide; their impacts must not be stopped along with the hops.
-    if work.region.records.iter().any(closes_fast) {
-        return false;
-    }
-    let Some(wait) = time_of_hops(assembly, work) else { return false };
-    let EventWork { region, impact, settling, carried, stop, .. } = &mut *work;
-    carried.clear();
-    carried.resize(region.records.len(), 0.0);
-    for &(index, _) in &settling.held {
-        let record = &region.records[index];
-        carried[index] = if record.parties.bilateral { 0.0 } else { force_of(record) * wait };
-    }
-    set_rows(assembly, connectors, pairs, region, impact);
-    impact.unload(carried);
-    if impact.try_inelastic().is_err() {
-        return false;
-    }
-    conclude_impact(assembly, books, region, impact, stop, assembly.now);
-    remeasure(assembly, connectors, region, assembly.now);
-    book_impact(assembly, books, stop, Booking::Capture);
-    settling.let_leave(|index| {
-        let record = &region.records[index];
-        opens(assembly, record) && !stays_in_corner(connectors, record)
-    });
-    true
+pub(crate) fn any_held_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> bool {
+    let records = &region.records;
+    settling.held.iter().any(|&(index, _)| opens(assembly, &records[index]))
 }
 
 /// Time [s] until all held contacts that hop are at rest; `None` if no contact that opens makes a low hop.
-fn time_of_hops(assembly: &Assembly, work: &EventWork) -> Option<f64> {
-    let records = &work.region.records;
-    let held = work.settling.held.iter().map(|&(index, _)| &records[index]);
+pub(crate) fn time_of_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> Option<f64> {
+    let records = &region.records;
+    let held = settling.held.iter().map(|&(index, _)| &records[index]);
     let times = held.filter(|record| opens(assembly, record)).filter_map(|record| {
         let rate = record.motion.normal_velocity;
         let row = row_of(assembly, record);
@@ -135,7 +86,7 @@ fn time_of_hops(assembly: &Assembly, work: &EventWork) -> Option<f64> {
 }
 
 /// Force [N] at which a contact is held.
-fn force_of(record: &Collision) -> f64 {
+pub(crate) fn force_of(record: &Collision) -> f64 {
     record.response.force.unwrap_or_default()
 }
 

@@ -9,7 +9,7 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{RowSource, mechanism, source_of};
 use crate::rigid::group::dynamics::Stage;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Pose, Rotation};

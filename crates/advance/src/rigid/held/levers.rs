@@ -5,19 +5,12 @@
 //! orthogonalising it against those rows, twice, which is exact to rounding of the row (W. Kahan and B. Parlett, in B.
 //! Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
 
-use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::touch::Touch;
-use crate::rigid::held::settling::Settling;
-use crate::rigid::region::region::Region;
-use crate::rigid::search::graze::{grazing_gap, is_tied};
+use crate::rigid::region::touching::Region;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::InverseInertia;
 
 /// A bilateral row depends on others if they leave less than this fraction of its square.
 const DEPENDENT: f64 = 1e-12;
-/// A lever is next to none below this fraction of what it would be without the connectors.
-const LEVER: f64 = 1e-3;
 
 /// Orthonormal basis of the rows of a region's connectors, in the metric of the masses.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +22,7 @@ pub(crate) struct Levers {
 
 impl Levers {
     /// Builds the basis from the connectors of a region.
-    fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> InverseInertia) {
+    pub(crate) fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> InverseInertia) {
         self.basis.clear();
         for record in region.records.iter().filter(|record| record.parties.bilateral) {
             if self.left_of(region, record, &inertia) > DEPENDENT {
@@ -41,7 +34,7 @@ impl Levers {
 
     /// Fraction of a record's square that the connectors leave: the square of its lever relative to that without them.
     /// 0 if neither body can move.
-    fn left_of(
+    pub(crate) fn left_of(
         &mut self,
         region: &Region,
         record: &Collision,
@@ -68,29 +61,4 @@ impl Levers {
         }
         if whole > 0.0 { square(row) / whole } else { 0.0 }
     }
-}
-
-/// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
-/// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
-/// been left out.
-pub(crate) fn let_pass(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    region: &Region,
-    settling: &mut Settling,
-) -> bool {
-    let Settling { candidates, passing, levers, .. } = settling;
-    levers.load(region, |body| assembly.inertia(body));
-    candidates.retain(|&index| {
-        let record = &region.records[index];
-        let bodies = record.bodies();
-        let passes = !record.parties.bilateral
-            && record.geometry.distance > grazing_gap(assembly, bodies)
-            && bodies.iter().any(|&body| is_tied(connectors, body))
-            && levers.left_of(region, record, |body| assembly.inertia(body)) < LEVER * LEVER;
-        let touch = Touch::of(record).filter(|_| passes);
-        passing.extend(touch);
-        touch.is_none()
-    });
-    !settling.passing.is_empty()
 }

@@ -4,8 +4,11 @@
 //! `squeezed` bodies that are too light for what they carry.
 
 pub(super) mod hops;
+pub(super) mod jammed;
 pub(super) mod leaving;
 pub(super) mod levers;
+pub(super) mod passing;
 pub(super) mod redundant;
 pub(super) mod settle;
 pub(super) mod settling;
+pub(super) mod sparing;

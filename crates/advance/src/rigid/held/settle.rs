@@ -11,23 +11,22 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::bounces::formed_at;
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::contacts::rows::{HeldRow, RowSource, source_of, with_lean};
-use crate::rigid::contacts::touch::Touch;
+use crate::rigid::contacts::touch::{DEEPEST, Touch};
 use crate::rigid::error::{AdvanceError, Between};
-use crate::rigid::event::work::EventWork;
 use crate::rigid::group::dynamics::{LEVEL, Stage};
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::physics::physics;
 use crate::rigid::group::segment::LONGEST_STEP;
 use crate::rigid::held::hops::{is_low_hop, may_hop};
+use crate::rigid::held::jammed::is_jammed;
 use crate::rigid::held::leaving::drop_leaving;
-use crate::rigid::held::levers::let_pass;
-use crate::rigid::held::redundant::{spare_nearly_redundant, spare_redundant};
-use crate::rigid::held::settling::{SMALL_CONTRADICTION, Settling};
-use crate::rigid::impact::jams::{JAM, is_close};
+use crate::rigid::held::passing::let_pass;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::held::sparing::{spare_nearly_redundant, spare_redundant};
+use crate::rigid::impact::jams::{SMALL_CONTRADICTION, is_close};
 use crate::rigid::region::cause::Cause;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
-use crate::rigid::zeno::repeats::has_pulled;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
@@ -36,9 +35,7 @@ use halfgap_contact::SolveError;
 /// Depth below its zone from which a row is lifted, as a multiple of the distance by which a contact sinks at a time: a
 /// row that has just been lifted may sink once.
 const SUNK: f64 = 1.5;
-/// Largest penetration of a held contact whose zone cannot be seen, as a multiple of the target gap: a deeper one is
-/// lifted to it.
-pub(crate) const DEEPEST: f64 = 0.5;
+
 /// Distance beyond its end at which a rope or a stop is held when it is lifted, as a fraction of its `accuracy`.
 const ROPE_SHARE: f64 = 0.5;
 
@@ -112,10 +109,10 @@ pub(crate) fn settle(
     while drop_idle(view.assembly, view.pairs, region, settling, stage) {
         solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
     }
-    if region.is_unsound || (!is_start && (settling.is_shared() || has_pulled(view.zeno, time))) {
+    if region.is_unsound || (!is_start && (settling.is_shared() || settling.has_pulled)) {
         spare_nearly_redundant(view.assembly, region, settling);
     }
-    if is_start || has_pulled(view.zeno, time) {
+    if is_start || settling.has_pulled {
         // The last problem may still have had candidates that were then dropped without a force.
         pose_problem(view.assembly, region, settling, stage);
         spare_redundant(view.assembly, region, settling, stage);
@@ -226,10 +223,9 @@ fn push_bodies(assembly: &Assembly, region: &Region, settling: &mut Settling, st
 pub(crate) fn accelerations_of(
     assembly: &Assembly,
     groups: &Groups,
-    work: &mut EventWork,
+    (region, settling): (&Region, &mut Settling),
     records: [usize; 2],
 ) -> [f64; 2] {
-    let EventWork { region, settling, .. } = work;
     push_bodies(assembly, region, settling, &groups.stage);
     records.map(|record| offset_under(region, &region.records[record], &settling.pushed))
 }
@@ -237,21 +233,6 @@ pub(crate) fn accelerations_of(
 /// True if a unilateral row may carry a force: connectors always do.
 pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
     assembly.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
-}
-
-/// True if contact forces are so much larger than the loads of the bodies that rows seem to work against each
-/// other, as those on both sides of a body that just fits. Connectors do not count: those with long arms have such
-/// forces anyway.
-fn is_jammed(assembly: &Assembly, region: &Region, settling: &Settling, stage: &Stage) -> bool {
-    let forces = settling.candidates.iter().zip(&settling.solution.force);
-    let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
-    is_jam(assembly, region, stage, of_contacts.fold(0.0, |most, (_, force)| most.max(force.abs())))
-}
-
-/// True if a largest contact force [N] is that of a jam.
-pub(crate) fn is_jam(assembly: &Assembly, region: &Region, stage: &Stage, largest: f64) -> bool {
-    let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| assembly.flyer(body).load(a));
-    largest > JAM * loads.sum::<f64>()
 }
 
 /// Leaves out contacts beyond their target gap, which need not be in contact: a body that fits between two others
@@ -487,6 +468,7 @@ mod tests {
     use crate::rigid::bodies::flyer::FlightLaw;
     use crate::rigid::books::energy::interrupt;
     use crate::rigid::event::life::dissolve;
+    use crate::rigid::event::work::EventWork;
     use crate::rigid::group::groups::group_of;
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::region::collecting::collect_region;

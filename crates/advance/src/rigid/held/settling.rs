@@ -6,15 +6,12 @@ use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::held::levers::Levers;
 use crate::rigid::held::redundant::Redundant;
-use crate::rigid::region::region::Region;
+use crate::rigid::impact::jams::SMALL_CONTRADICTION;
+use crate::rigid::region::touching::Region;
 use halfgap_collision::BodyId;
 use halfgap_contact::{
     Auto, InverseInertia, Method, Problem, Settings, Solution, SolveError, Solver, WarmStart,
 };
-
-/// Contradiction of rows, relative to the largest acceleration, up to which contacts are solved by least squares: that
-/// of rows that move no faster than at rest. The contradiction of contacts that crush a body is of the order of 1.
-pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
 
 /// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are held.
 const LENIENT_RESIDUAL: f64 = 1e-6;
@@ -29,6 +26,8 @@ pub(crate) struct Settling {
     sharing: Auto,
     /// The event is the start: `sharing` solves it.
     pub(super) is_start: bool,
+    /// A group was ended at the present time as soon as it was made, because one of its contacts pulled.
+    pub(crate) has_pulled: bool,
     /// Solver for contacts that contradict each other by more than rounding, but by little.
     lenient: Auto,
     /// Indices of the records that enter the problem.
@@ -80,6 +79,7 @@ impl Default for Settling {
             solver: solver(settings),
             sharing: solver(sharing),
             is_start: false,
+            has_pulled: false,
             lenient: solver(lenient),
             candidates: Vec::new(),
             dropped: Vec::new(),

@@ -12,7 +12,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::corners::go_along;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::row_of;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use halfgap_collision::{Collision, ConnectorId, Detector};
 
 /// A corner of a rail that holds the rail's point, in a region.

@@ -2,7 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::squeezed::LARGEST_MASS_RATIO;
-use crate::rigid::books::Books;
+use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, interrupt};
 use crate::rigid::books::report::{ImpactReport, RowReport};
 use crate::rigid::connectors::store::Connectors;
@@ -10,11 +10,8 @@ use crate::rigid::contacts::bounces::{bounces_low, closes_fast};
 use crate::rigid::contacts::pairs::{Pairs, is_likely};
 use crate::rigid::contacts::rows::row_of;
 use crate::rigid::error::{AdvanceError, Between};
-use crate::rigid::event::rooms::Rooms;
-use crate::rigid::impact::corners::hold_back;
-use crate::rigid::impact::jams::{find_impulses_of_pressed, leave_out_jammed};
 use crate::rigid::region::records::rate_of;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::time::Time;
 use glam::DVec2;
@@ -24,36 +21,12 @@ use halfgap_contact::{CollisionRow, Impact, ImpactError};
 /// Manner in which an impact is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Manner {
-    /// By the impact law of the settings.
-    Lawful,
+    /// By the impact law of the settings; the number of impacts before this one tells serial laws their order.
+    Lawful(u64),
     /// Without elasticity.
     Inelastic,
     /// Without elasticity, but given up if that takes long.
     Trial,
-}
-
-/// Resolves the impact of a region's rows and writes the report. The bodies, which must be in flight, go on with
-/// changed velocities, and the records get their impulses.
-pub(crate) fn resolve_impact(
-    rooms: &mut Rooms,
-    region: &mut Region,
-    impact: &mut Impact,
-    report: &mut ImpactReport,
-    time: Time,
-    manner: Manner,
-) -> Result<(), AdvanceError> {
-    let outcome = find_impulses(&rooms.view(), region, impact, manner);
-    outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
-    if leave_out_jammed(&rooms.assembly, region, impact) {
-        let outcome = find_impulses_of_pressed(&rooms.view(), region, impact, manner);
-        outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
-    }
-    while hold_back(&rooms.assembly, &mut rooms.connectors, region, impact.rates()) {
-        let outcome = find_impulses(&rooms.view(), region, impact, manner);
-        outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
-    }
-    conclude_impact(&mut rooms.assembly, &mut rooms.books, region, impact, report, time);
-    Ok(())
 }
 
 /// Finds the impulses of a region's rows.
@@ -65,11 +38,9 @@ pub(crate) fn find_impulses(
 ) -> Result<(), ImpactError> {
     set_rows(view.assembly, view.connectors, view.pairs, region, impact);
     match manner {
-        Manner::Lawful => view.assembly.settings.law.resolve(
-            impact,
-            view.assembly.settings.order,
-            view.books.counts.impacts,
-        ),
+        Manner::Lawful(number) => {
+            view.assembly.settings.law.resolve(impact, view.assembly.settings.order, number)
+        }
         Manner::Inelastic => impact.resolve_inelastic(),
         Manner::Trial => impact.try_inelastic(),
     }
@@ -91,7 +62,7 @@ pub(crate) fn set_rows(
     region: &Region,
     impact: &mut Impact,
 ) {
-    let dull = assembly.settings.impulse_step.is_none() && bounces_low(assembly, pairs, region);
+    let dull = assembly.settings.impulse_step.is_none() && bounces_low(assembly, pairs, &region.records);
     let rows = region.records.iter().map(|record| {
         let row = row_of(assembly, record);
         let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
@@ -164,7 +135,12 @@ fn write_report(
     report.states.extend(struck.map(|(&body, _)| (body, assembly.flyer(body).state_at(time))));
 }
 
-fn impact_error(assembly: &Assembly, region: &Region, time: Time, source: ImpactError) -> AdvanceError {
+pub(crate) fn impact_error(
+    assembly: &Assembly,
+    region: &Region,
+    time: Time,
+    source: ImpactError,
+) -> AdvanceError {
     let touching = region.records.iter().map(Collision::bodies);
     if let Err(squeezed) = assembly.refuse_squeezed(touching, LARGEST_MASS_RATIO, time) {
         return squeezed;

@@ -6,9 +6,8 @@
 //! between them stops the body for good.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::held::settling::SMALL_CONTRADICTION;
 use crate::rigid::impact::impacts::{Manner, find_impulses};
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::{Impact, ImpactError};
@@ -101,13 +100,17 @@ impl Region {
     }
 }
 
+/// Contradiction of rows, relative to the largest acceleration, up to which contacts are solved by least squares: that
+/// of rows that move no faster than at rest. The contradiction of contacts that crush a body is of the order of 1.
+pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::rigid::bodies::flyer::FlightLaw;
     use crate::rigid::books::energy::interrupt;
     use crate::rigid::books::report::ImpactReport;
-    use crate::rigid::impact::impacts::resolve_impact;
+    use crate::rigid::event::resolving::resolve_impact;
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::region::cause::Cause;
     use crate::rigid::region::collecting::collect_region;

@@ -4,10 +4,9 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::is_rope;
 use crate::rigid::contacts::pairs::{Link, is_held_contact};
 use crate::rigid::contacts::touch::{Touch, sorted, touch_of};
-use crate::rigid::event::events::passes_by;
 use crate::rigid::group::groups::{Groups, group_of};
 use crate::rigid::region::cause::Cause;
-use crate::rigid::region::region::Region;
+use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::search::flush::is_passed_over;
 use crate::rigid::search::graze::{is_grazing, rope_grazes};
@@ -17,7 +16,7 @@ use crate::rigid::sinking::depth::may_have_sunk_by;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
-    BodyId, Collision, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
+    BodyId, Collision, Detector, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
 };
 
 /// Adds the records of the connectors of a body of the region, and the bodies at their other ends.
@@ -189,4 +188,16 @@ fn is_carried(assembly: &Assembly, groups: &Groups, record: &Collision) -> bool 
     let Some(touch) = Touch::of(record) else { return false };
     let mut groups = touch.bodies.into_iter().filter_map(|body| group_of(assembly, groups, body));
     groups.any(|group| group.rows.iter().any(|row| row.touch() == Some(touch)))
+}
+
+/// True if two corners pass each other before they come to the gap at which their bodies fire.
+pub(crate) fn passes_by(search: &Neighbourhood, record: &Collision) -> bool {
+    if record.parties.detector != Detector::CornerCorner {
+        return false;
+    }
+    let halo = |body: BodyId| search.lanes[body.index()].halo;
+    let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
+    let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
+    let nearest = record.geometry.distance * across.abs() / libm::hypot(along, across);
+    nearest > halos.min(record.tolerances.target_gap)
 }

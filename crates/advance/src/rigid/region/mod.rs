@@ -4,5 +4,5 @@ pub(super) mod cause;
 pub(super) mod collecting;
 pub(super) mod lift;
 pub(super) mod records;
-pub(super) mod region;
+pub(super) mod touching;
 pub(super) mod view;

@@ -2,7 +2,9 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::region::region::Region;
+use crate::rigid::contacts::gaps::gap_at;
+use crate::rigid::region::cause::Cause;
+use crate::rigid::region::touching::Region;
 use crate::time::Time;
 use halfgap_collision::{BodyId, Collision, Detector, Moving};
 use halfgap_geometry::GapSample;
@@ -41,5 +43,22 @@ fn remeasure_record(assembly: &Assembly, connectors: &Connectors, record: &mut C
 pub(crate) fn remeasure(assembly: &Assembly, connectors: &Connectors, region: &mut Region, time: Time) {
     for record in &mut region.records {
         remeasure_record(assembly, connectors, record, time);
+    }
+}
+
+/// Gap [m] and rate [m/s] at a time of the contact, rope or stop that fires an event; `None` for other causes.
+pub(crate) fn gap_of_cause(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    cause: Cause,
+    time: Time,
+) -> Option<(f64, f64)> {
+    match cause {
+        Cause::Fired(touch) => Some(gap_at(assembly, touch, time)),
+        Cause::Taut(id) => {
+            let sample = connectors.measure_connector(assembly, id, 0, time);
+            Some((sample.gap, sample.kinematics.rate))
+        }
+        _ => None,
     }
 }

@@ -2,18 +2,18 @@
 
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::path::Path;
-use crate::rigid::connectors::store::{crossing_time, rope_of, slack_of};
-use crate::rigid::region::region::Region;
+use crate::rigid::connectors::store::{rope_of, slack_of};
 use crate::rigid::search::graze::{grazing_slack, rope_grazes};
+use crate::rigid::search::predictions::LONGEST_SPAN;
 use crate::rigid::search::searching::Searching;
 use crate::time::Time;
-use halfgap_collision::{BodyId, ConnectorId, Flight, Motion, Rope, RopeSearch, rope_contact};
+use halfgap_collision::{BodyId, ConnectorId, Flight, Motion, MotionBounds, Rope, RopeSearch, rope_contact};
 
 impl Searching<'_> {
-    /// Predicts when the ropes of a region's bodies go taut.
-    pub(crate) fn predict_ropes(&mut self, region: &Region) {
+    /// Predicts when the ropes of some bodies go taut.
+    pub(crate) fn predict_ropes(&mut self, bodies: &[BodyId]) {
         let sink = self.assembly.sink();
-        for &body in &region.bodies {
+        for &body in bodies {
             for index in 0..self.connectors.of(body).len() {
                 let id = self.connectors.of(body)[index];
                 let Some(rope) = rope_of(self.connectors.connector(id)) else { continue };
@@ -153,3 +153,13 @@ impl Searching<'_> {
 
 /// Number of times at which a rope is tested for having gone slack before it is taut again.
 const LOOKS: u32 = 8;
+
+/// Rough time [s] in which the ends of a rope, as they move now, go as far as the rope is long.
+fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {
+    let turning = a.angular_speed * rope.point_a.length() + b.angular_speed * rope.point_b.length();
+    let speed = a.velocity.largest_difference(&b.velocity) + turning;
+    let acceleration = a.acceleration.largest_difference(&b.acceleration);
+    let by_speed = if speed > 0.0 { rope.length / speed } else { LONGEST_SPAN };
+    let by_acceleration = if acceleration > 0.0 { (rope.length / acceleration).sqrt() } else { LONGEST_SPAN };
+    by_speed.min(by_acceleration).min(LONGEST_SPAN)
+}

@@ -1,6 +1,6 @@
 //! The earliest event found that ends a segment.
 
-use crate::rigid::group::group::SegmentEnd;
+use crate::rigid::group::state::SegmentEnd;
 
 /// The earliest end of a segment found so far.
 #[derive(Clone, Copy, Debug, Default)]

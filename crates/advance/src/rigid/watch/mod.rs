@@ -5,8 +5,9 @@
 
 pub(super) mod crossing;
 pub(super) mod earliest;
+pub(super) mod early_ends;
+pub(super) mod extending;
 pub(super) mod overdue;
 pub(super) mod releases;
 pub(super) mod staying;
 pub(super) mod switches;
-pub(super) mod watch;

@@ -7,38 +7,36 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
 use crate::rigid::watch::crossing::{Part, fall_from_below};
 use crate::rigid::watch::earliest::Earliest;
-use crate::rigid::watch::watch::Watch;
+use crate::rigid::watch::early_ends::Watch;
 
-impl Dynamics<'_> {
-    /// Offers the earliest fall of any row of a watch that is below zero at the start and falls on; it may do so along
-    /// many segments.
-    ///
-    /// * `samples`: values at the nodes of a part of the segment, row by row;
-    /// * `below`: how far below zero each row was when that was first seen, 0 for the others; updated;
-    /// * `rounding`: how far below zero a row may be by rounding alone.
-    pub(super) fn find_overdue(
-        &mut self,
-        earliest: &mut Earliest,
-        (samples, part, below): (&[[f64; NODES]], Part, &mut Vec<f64>),
-        watch: &Watch,
-        rounding: impl Fn(&Self, usize) -> f64,
-    ) {
-        below.resize(samples.len(), 0.0);
-        for (row, (values, below)) in samples.iter().zip(below).enumerate() {
-            if values[0] >= 0.0 {
-                *below = 0.0;
-                continue;
-            }
-            if *below == 0.0 {
-                *below = -values[0];
-            }
-            let allowed = 2.0 * rounding(self, row).max(*below);
-            let fall = fall_from_below(values, part.span(), allowed, |offset| {
-                (watch.place_for)(self, row, part.from + offset);
-                (watch.read)(self, row)
-            });
-            earliest.offer(fall.map(|offset| part.from + offset), (watch.end)(row));
+/// Offers the earliest fall of any row of a watch that is below zero at the start and falls on; it may do so along
+/// many segments.
+///
+/// * `samples`: values at the nodes of a part of the segment, row by row;
+/// * `below`: how far below zero each row was when that was first seen, 0 for the others; updated;
+/// * `rounding`: how far below zero a row may be by rounding alone.
+pub(super) fn find_overdue(
+    dynamics: &mut Dynamics<'_>,
+    earliest: &mut Earliest,
+    (samples, part, below): (&[[f64; NODES]], Part, &mut Vec<f64>),
+    watch: &Watch,
+    rounding: impl Fn(&Dynamics<'_>, usize) -> f64,
+) {
+    below.resize(samples.len(), 0.0);
+    for (row, (values, below)) in samples.iter().zip(below).enumerate() {
+        if values[0] >= 0.0 {
+            *below = 0.0;
+            continue;
         }
+        if *below == 0.0 {
+            *below = -values[0];
+        }
+        let allowed = 2.0 * rounding(dynamics, row).max(*below);
+        let fall = fall_from_below(values, part.span(), allowed, |offset| {
+            (watch.place_for)(dynamics, row, part.from + offset);
+            (watch.read)(dynamics, row)
+        });
+        earliest.offer(fall.map(|offset| part.from + offset), (watch.end)(row));
     }
 }
 
@@ -47,9 +45,10 @@ mod tests {
     use crate::rigid::bodies::law::{ForceLaw, Snapshot, Wrenches};
     use crate::rigid::event::life::continue_group;
     use crate::rigid::event::rooms::Rooms;
-    use crate::rigid::group::group::{Group, SegmentEnd};
     use crate::rigid::group::groups::{group_of, put_group, with_group};
+    use crate::rigid::group::state::{Group, SegmentEnd};
     use crate::rigid::test_scene::{block_on_its_corner, resting_discs, turn_on_its_corner};
+    use crate::rigid::watch::early_ends::find_event;
     use crate::time::Time;
     use glam::DVec2;
     use halfgap_collision::BodyId;
@@ -84,7 +83,7 @@ mod tests {
             dynamics.set_out();
             dynamics.extend(tools).expect("it moves");
             dynamics.make_dense(tools.stepper);
-            dynamics.find_event();
+            find_event(dynamics);
         });
         group
     }

@@ -5,13 +5,14 @@
 //! many as the forces ask for.
 
 use crate::rigid::contacts::rows::HeldRow;
-use crate::rigid::group::brief::Stepping;
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::{Group, SegmentEnd};
 use crate::rigid::group::samples::NODES;
+use crate::rigid::group::state::{Group, SegmentEnd};
+use crate::rigid::group::stepping::Stepping;
 use crate::rigid::watch::crossing::{Part, interpolated};
 use crate::rigid::watch::earliest::Earliest;
-use crate::rigid::watch::watch::{Watch, fill};
+use crate::rigid::watch::early_ends::{Watch, fill, find_first};
+use crate::rigid::watch::overdue::find_overdue;
 
 /// Force that counts as none, as a fraction of the loads of its bodies: more than the rounding of nearly redundant
 /// contacts.
@@ -40,178 +41,179 @@ const HALVINGS_AT_POLES: usize = 64;
 const RELEASES: Watch = Watch {
     place: |dynamics, offset| dynamics.evaluate_at(offset),
     place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
-    read: |dynamics, row| dynamics.pressure(row),
+    read: |dynamics, row| pressure(dynamics, row),
     genuine: |_, _, offset| Some(offset),
     end: SegmentEnd::Release,
 };
 
-impl Dynamics<'_> {
-    /// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
-    /// before the offset of the look.
-    pub(crate) fn look_for_release(&mut self) {
-        let from = self.group.look.take().unwrap_or(0.0);
-        self.find_least_forces();
-        let mut earliest = Earliest { found: self.pull_at_start().or(self.group.event) };
-        let mut forces = std::mem::take(&mut self.stage.samples.forces);
-        let mut pulled = std::mem::take(&mut self.group.pulled);
-        let narrowest = NARROWEST * self.group.span;
-        let end = earliest.limit().unwrap_or(self.group.span);
-        let most = if self.group.laws.is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
-        let (mut part, mut halvings) = (Part::all(end), 0);
-        while earliest.is_after(part.from) {
-            self.sample_forces(&mut forces, part);
-            while halvings < most && part.span() > narrowest && !self.is_resolved_by(&forces, part) {
-                part.to = part.node(NODES / 2);
-                halvings += 1;
-                self.sample_forces(&mut forces, part);
-            }
-            self.find_first(&mut earliest, (&forces, part), &RELEASES);
-            self.find_overdue(&mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
-                PULL * dynamics.stage.least[row]
-            });
-            if part.to >= end {
-                break;
-            }
-            // The next part may be twice as long.
-            part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(end) };
+/// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
+/// before the offset of the look.
+pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
+    let from = dynamics.group.look.take().unwrap_or(0.0);
+    find_least_forces(dynamics);
+    let mut earliest = Earliest { found: pull_at_start(dynamics).or(dynamics.group.event) };
+    let mut forces = std::mem::take(&mut dynamics.stage.samples.forces);
+    let mut pulled = std::mem::take(&mut dynamics.group.pulled);
+    let narrowest = NARROWEST * dynamics.group.span;
+    let end = earliest.limit().unwrap_or(dynamics.group.span);
+    let most = if dynamics.group.laws.is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
+    let (mut part, mut halvings) = (Part::all(end), 0);
+    while earliest.is_after(part.from) {
+        sample_forces(dynamics, &mut forces, part);
+        while halvings < most && part.span() > narrowest && !is_resolved_by(dynamics, &forces, part) {
+            part.to = part.node(NODES / 2);
+            halvings += 1;
+            sample_forces(dynamics, &mut forces, part);
         }
-        self.group.pulled = pulled;
-        self.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
-        self.stage.samples.forces = forces;
+        find_first(dynamics, &mut earliest, (&forces, part), &RELEASES);
+        find_overdue(dynamics, &mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
+            PULL * dynamics.stage.least[row]
+        });
+        if part.to >= end {
+            break;
+        }
+        // The next part may be twice as long.
+        part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(end) };
     }
+    dynamics.group.pulled = pulled;
+    dynamics.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
+    dynamics.stage.samples.forces = forces;
+}
 
-    /// True if the quartics through the samples show all that contact forces do on a part of the segment. No error
-    /// estimate tells how forces vary that hold bodies altogether, nor that forces grow without bound where rows become
-    /// singular: two corners that hold a body flush come together as it slides off.
-    fn is_resolved_by(&mut self, forces: &[[f64; NODES]], part: Part) -> bool {
-        BETWEEN_NODES.into_iter().all(|fraction| {
-            self.evaluate_at(part.from + fraction * part.span());
-            forces.iter().enumerate().filter(|(_, values)| values[0].is_finite()).all(|(row, values)| {
-                let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-                let allowed = self.stage.least[row].max(RESOLVED * size);
-                (self.pressure(row) - interpolated(values, fraction)).abs() <= allowed
-            })
+/// True if the quartics through the samples show all that contact forces do on a part of the segment. No error
+/// estimate tells how forces vary that hold bodies altogether, nor that forces grow without bound where rows become
+/// singular: two corners that hold a body flush come together as it slides off.
+fn is_resolved_by(dynamics: &mut Dynamics<'_>, forces: &[[f64; NODES]], part: Part) -> bool {
+    BETWEEN_NODES.into_iter().all(|fraction| {
+        dynamics.evaluate_at(part.from + fraction * part.span());
+        forces.iter().enumerate().filter(|(_, values)| values[0].is_finite()).all(|(row, values)| {
+            let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+            let allowed = dynamics.stage.least[row].max(RESOLVED * size);
+            (pressure(dynamics, row) - interpolated(values, fraction)).abs() <= allowed
         })
-    }
+    })
+}
 
-    /// Release of a contact that pulls by more than rounding as the group is made.
-    fn pull_at_start(&self) -> Option<(f64, SegmentEnd)> {
-        let Group { start, made, .. } = *self.group;
-        if self.group.is_patient || start != made {
-            return None;
+/// Release of a contact that pulls by more than rounding as the group is made.
+fn pull_at_start(dynamics: &Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
+    let Group { start, made, .. } = *dynamics.group;
+    if dynamics.group.is_patient || start != made {
+        return None;
+    }
+    let pulls =
+        |((row, force), least): ((&HeldRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
+    let row =
+        dynamics.group.rows.iter().zip(&dynamics.group.forces).zip(&dynamics.stage.least).position(pulls)?;
+    Some((0.0, SegmentEnd::Release(row)))
+}
+
+/// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
+/// is so all along. A force is firm all along if its least value at the stages and both ends exceeds its variation,
+/// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
+/// stages to tell; along steps that force laws have left too long, the variation does not tell the rate.
+pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
+    let Group { rows, forces, end_forces, laws, .. } = &*dynamics.group;
+    let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
+    let is_known =
+        dynamics.group.stepping() != Stepping::Stiff && dynamics.stage.force_ranges.len() == rows.len();
+    let part = |(index, _): (usize, &HeldRow)| {
+        let (start, end) = (forces[index], end_forces[index]);
+        let [least, largest] = if is_known { dynamics.stage.force_ranges[index] } else { [start, end] };
+        let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
+        let is_firm = is_known && least > largest - least;
+        let is_slow = is_known && laws.is_empty() && start > 0.0;
+        let part = if is_slow { start / (STEEP * (largest - least)) } else { 0.0 };
+        (!is_firm).then_some(part)
+    };
+    contacts.filter_map(part).min_by(f64::total_cmp)
+}
+
+/// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
+/// which is that of the body's acceleration plus the forces of all its rows.
+fn find_least_forces(dynamics: &mut Dynamics<'_>) {
+    let group = &*dynamics.group;
+    let count = group.bodies.len();
+    let mut gross = std::mem::take(&mut dynamics.stage.gross);
+    gross.clear();
+    gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
+        let at = 3 * (count + place);
+        dynamics.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
+    }));
+    for (index, sides) in group.sides.iter().enumerate() {
+        let force = group.forces[index].abs().max(group.end_forces[index].abs());
+        sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
+    }
+    dynamics.stage.least.clear();
+    dynamics.stage.least.extend(group.sides.iter().map(|sides| {
+        let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
+        FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
+    }));
+    dynamics.stage.gross = gross;
+}
+
+/// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.
+fn sample_forces(dynamics: &mut Dynamics<'_>, samples: &mut Vec<[f64; NODES]>, part: Part) {
+    fill(samples, dynamics.group.rows.len());
+    for index in 0..NODES {
+        let offset = part.node(index);
+        let is_inside = offset > 0.0 && offset < dynamics.group.span;
+        if is_inside {
+            dynamics.evaluate_at(offset);
         }
-        let pulls =
-            |((row, force), least): ((&HeldRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
-        let row = self.group.rows.iter().zip(&self.group.forces).zip(&self.stage.least).position(pulls)?;
-        Some((0.0, SegmentEnd::Release(row)))
-    }
-
-    /// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
-    /// is so all along. A force is firm all along if its least value at the stages and both ends exceeds its variation,
-    /// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
-    /// stages to tell; along steps that force laws have left too long, the variation does not tell the rate.
-    pub(super) fn firm_part(&self) -> Option<f64> {
-        let Group { rows, forces, end_forces, laws, .. } = &*self.group;
-        let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
-        let is_known =
-            self.group.stepping() != Stepping::Stiff && self.stage.force_ranges.len() == rows.len();
-        let part = |(index, _): (usize, &HeldRow)| {
-            let (start, end) = (forces[index], end_forces[index]);
-            let [least, largest] = if is_known { self.stage.force_ranges[index] } else { [start, end] };
-            let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
-            let is_firm = is_known && least > largest - least;
-            let is_slow = is_known && laws.is_empty() && start > 0.0;
-            let part = if is_slow { start / (STEEP * (largest - least)) } else { 0.0 };
-            (!is_firm).then_some(part)
+        let forces = match offset {
+            _ if is_inside => &dynamics.stage.forces,
+            0.0 => &dynamics.group.forces,
+            _ => &dynamics.group.end_forces,
         };
-        contacts.filter_map(part).min_by(f64::total_cmp)
-    }
-
-    /// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
-    /// which is that of the body's acceleration plus the forces of all its rows.
-    fn find_least_forces(&mut self) {
-        let group = &*self.group;
-        let count = group.bodies.len();
-        let mut gross = std::mem::take(&mut self.stage.gross);
-        gross.clear();
-        gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
-            let at = 3 * (count + place);
-            self.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
-        }));
-        for (index, sides) in group.sides.iter().enumerate() {
-            let force = group.forces[index].abs().max(group.end_forces[index].abs());
-            sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
-        }
-        self.stage.least.clear();
-        self.stage.least.extend(group.sides.iter().map(|sides| {
-            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
-            FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
-        }));
-        self.stage.gross = gross;
-    }
-
-    /// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.
-    fn sample_forces(&mut self, samples: &mut Vec<[f64; NODES]>, part: Part) {
-        fill(samples, self.group.rows.len());
-        for index in 0..NODES {
-            let offset = part.node(index);
-            let is_inside = offset > 0.0 && offset < self.group.span;
-            if is_inside {
-                self.evaluate_at(offset);
-            }
-            let forces = match offset {
-                _ if is_inside => &self.stage.forces,
-                0.0 => &self.group.forces,
-                _ => &self.group.end_forces,
-            };
-            let rows = self.group.rows.iter().zip(forces).zip(&self.stage.least);
-            for (sample, ((row, force), least)) in samples.iter_mut().zip(rows) {
-                sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
-            }
+        let rows = dynamics.group.rows.iter().zip(forces).zip(&dynamics.stage.least);
+        for (sample, ((row, force), least)) in samples.iter_mut().zip(rows) {
+            sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
         }
     }
+}
 
-    /// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
-    fn pressure(&self, row: usize) -> f64 {
-        if self.group.rows[row].bilateral {
-            f64::INFINITY
-        } else {
-            self.stage.forces[row] + self.stage.least[row]
-        }
+/// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
+fn pressure(dynamics: &Dynamics<'_>, row: usize) -> f64 {
+    if dynamics.group.rows[row].bilateral {
+        f64::INFINITY
+    } else {
+        dynamics.stage.forces[row] + dynamics.stage.least[row]
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::{firm_part, look_for_release};
     use crate::rigid::agenda::Source;
     use crate::rigid::event::life::look_further;
-    use crate::rigid::group::group::SegmentEnd;
     use crate::rigid::group::groups::{group_of, put_group, with_group};
+    use crate::rigid::group::state::SegmentEnd;
     use crate::rigid::test_scene::resting_discs;
+    use crate::rigid::watch::early_ends::find_event;
     use halfgap_collision::BodyId;
 
     /// Fraction of the step up to which a contact is firm, if its force [N] goes from `start` to `end`.
-    pub(super) fn firm_part(start: f64, end: f64) -> Option<f64> {
+    fn firm_from_to(start: f64, end: f64) -> Option<f64> {
         let mut rooms = resting_discs(&[0.0]);
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         group.forces[0] = start;
         group.end_forces[0] = end;
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             dynamics.stage.clear_force_ranges(1);
-            dynamics.firm_part()
+            firm_part(dynamics)
         })
     }
 
     #[test]
     fn a_force_is_firm_for_as_long_as_it_cannot_vanish() {
-        assert_eq!(firm_part(10.0, 9.0), None);
-        assert_eq!(firm_part(9.0, 10.0), None);
+        assert_eq!(firm_from_to(10.0, 9.0), None);
+        assert_eq!(firm_from_to(9.0, 10.0), None);
         // The force falls by 8 N along the step, and at first no more than four times as fast.
-        assert_eq!(firm_part(10.0, 2.0), Some(10.0 / 32.0));
-        assert_eq!(firm_part(10.0, -6.0), Some(10.0 / 64.0));
+        assert_eq!(firm_from_to(10.0, 2.0), Some(10.0 / 32.0));
+        assert_eq!(firm_from_to(10.0, -6.0), Some(10.0 / 64.0));
         // A contact that starts without force is looked at at once.
-        assert_eq!(firm_part(0.0, 5.0), Some(0.0));
-        assert_eq!(firm_part(0.0, 0.0), Some(0.0));
+        assert_eq!(firm_from_to(0.0, 5.0), Some(0.0));
+        assert_eq!(firm_from_to(0.0, 0.0), Some(0.0));
     }
 
     #[test]
@@ -224,7 +226,7 @@ mod tests {
         group.end_forces[0] = -20.0;
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             dynamics.stage.clear_force_ranges(1);
-            dynamics.find_event();
+            find_event(dynamics);
         });
         assert!(group.event.is_none());
         assert_eq!(group.due(), group.start.plus(group.span / 8.0));
@@ -245,7 +247,7 @@ mod tests {
         let late = 2.0 * group.span;
         (group.event, group.look) = (None, Some(late));
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
-            dynamics.look_for_release()
+            look_for_release(dynamics)
         });
         assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
     }

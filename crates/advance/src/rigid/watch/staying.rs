@@ -60,35 +60,33 @@ pub(crate) fn way(rate: f64, second: f64, half: f64) -> f64 {
     (rate.abs() + 0.5 * second * half) * half
 }
 
-impl Dynamics<'_> {
-    /// Finds bounds on the motion of the group's bodies along the segment.
-    pub(crate) fn find_bounds(&mut self) {
-        self.stage.bounds.clear();
-        self.stage.bounds.extend(self.group.paths.iter().map(bounds_along));
-    }
+/// Finds bounds on the motion of the group's bodies along the segment.
+pub(crate) fn find_bounds(dynamics: &mut Dynamics<'_>) {
+    dynamics.stage.bounds.clear();
+    dynamics.stage.bounds.extend(dynamics.group.paths.iter().map(bounds_along));
+}
 
-    /// True if a held contact surely stays on its features along the segment. The bodies must be placed in its middle,
-    /// and their bounds known.
-    pub(crate) fn stays(&self, row: usize) -> bool {
-        let held = &self.group.rows[row];
-        let RowSource::Contact(features) = held.source else { return false };
-        let mechanism = &self.physics.mechanism;
-        let movings = held.bodies.map(|body| moving_of(&self.stage.movings, body));
-        let sample = mechanism.sample(held.bodies, features, movings);
-        let arms = Arms::of(&sample, movings[0], movings[1]);
-        let side = |index: usize, arm: DVec2| Side {
-            feature: mechanism.feature(held.bodies[index], features[index]),
-            moving: movings[index],
-            arm,
-            bounds: self.group.sides[row][index]
-                .map_or(MotionBounds::default(), |place| self.stage.bounds[place as usize]),
-        };
-        let (primary, other) = (side(0, arms.primary), side(1, arms.normal));
-        let half = 0.5 * self.group.span;
-        match other.feature {
-            Feature::Line(line) => stays_on_line(&sample, line, &primary, &other, half),
-            Feature::Round(_) => stays_between_ends(&sample, &primary, &other, half),
-        }
+/// True if a held contact surely stays on its features along the segment. The bodies must be placed in its middle,
+/// and their bounds known.
+pub(crate) fn stays(dynamics: &Dynamics<'_>, row: usize) -> bool {
+    let held = &dynamics.group.rows[row];
+    let RowSource::Contact(features) = held.source else { return false };
+    let mechanism = &dynamics.physics.mechanism;
+    let movings = held.bodies.map(|body| moving_of(&dynamics.stage.movings, body));
+    let sample = mechanism.sample(held.bodies, features, movings);
+    let arms = Arms::of(&sample, movings[0], movings[1]);
+    let side = |index: usize, arm: DVec2| Side {
+        feature: mechanism.feature(held.bodies[index], features[index]),
+        moving: movings[index],
+        arm,
+        bounds: dynamics.group.sides[row][index]
+            .map_or(MotionBounds::default(), |place| dynamics.stage.bounds[place as usize]),
+    };
+    let (primary, other) = (side(0, arms.primary), side(1, arms.normal));
+    let half = 0.5 * dynamics.group.span;
+    match other.feature {
+        Feature::Line(line) => stays_on_line(&sample, line, &primary, &other, half),
+        Feature::Round(_) => stays_between_ends(&sample, &primary, &other, half),
     }
 }
 
@@ -144,10 +142,12 @@ fn stays_between_ends(sample: &GapSample, primary: &Side<'_>, other: &Side<'_>, 
 
 #[cfg(test)]
 mod tests {
+    use super::{find_bounds, stays};
     use crate::rigid::event::rooms::Rooms;
-    use crate::rigid::group::group::Group;
     use crate::rigid::group::groups::with_group;
+    use crate::rigid::group::state::Group;
     use crate::rigid::test_scene::{block_on_its_corner, resting_discs, turn_on_its_corner};
+    use crate::rigid::watch::early_ends::way_to_end;
     use halfgap_collision::BodyId;
 
     /// Length of a segment [s].
@@ -164,12 +164,12 @@ mod tests {
             dynamics.extend(tools).expect("it slides");
             dynamics.make_dense(tools.stepper);
             let span = dynamics.group.span;
-            dynamics.find_bounds();
+            find_bounds(dynamics);
             dynamics.place_at(0.5 * span);
-            let said = dynamics.stays(0);
+            let said = stays(dynamics, 0);
             let done = (0..=64).all(|part| {
                 dynamics.place_at(span * f64::from(part) / 64.0);
-                dynamics.way_to_end(0) >= 0.0
+                way_to_end(dynamics, 0) >= 0.0
             });
             [said, done]
         })

@@ -3,8 +3,8 @@
 use crate::rigid::connectors::store::Stop;
 use crate::rigid::contacts::rows::moving_of;
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::{Group, SegmentEnd};
 use crate::rigid::group::samples::NODES;
+use crate::rigid::group::state::{Group, SegmentEnd};
 use crate::rigid::watch::crossing::{between_nodes, first_fall, node};
 use crate::rigid::watch::earliest::Earliest;
 
@@ -22,149 +22,143 @@ const LOOK_AHEAD: f64 = 1.0 / 1024.0;
 /// Fraction of the first segment of a group after which the sign of a switching function is read.
 const SIGN_AT: f64 = 1.0 / 1024.0;
 
-impl Dynamics<'_> {
-    /// Offset [s] at which a stop that is not held closes. A stop from which its point has just set out is touched at
-    /// the start: the search then covers so short a part of the segment that the point is off the stop. On a closed
-    /// rail a point that has gone by a stop seems to have come round: laps are told apart by the value read before.
-    pub(super) fn find_stop(&mut self, stop: Stop) -> Option<f64> {
-        let lap = self.lap_of(stop);
-        let mut reach = self.group.span;
-        for _ in 0..MOST_SHORTER {
-            let mut values = self.sample_stop(stop, reach, lap);
-            let touches = values[0] <= 0.0;
-            values[0] = values[0].max(0.0);
-            if !touches || values[1] >= 0.0 {
-                return first_fall(&values, reach, |offset| {
-                    in_lap(self.stop_at(stop, offset), between_nodes(&values, reach, offset), lap)
-                });
-            }
-            reach *= SHORTER;
+/// Offset [s] at which a stop that is not held closes. A stop from which its point has just set out is touched at
+/// the start: the search then covers so short a part of the segment that the point is off the stop. On a closed
+/// rail a point that has gone by a stop seems to have come round: laps are told apart by the value read before.
+pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {
+    let lap = lap_of(dynamics, stop);
+    let mut reach = dynamics.group.span;
+    for _ in 0..MOST_SHORTER {
+        let mut values = sample_stop(dynamics, stop, reach, lap);
+        let touches = values[0] <= 0.0;
+        values[0] = values[0].max(0.0);
+        if !touches || values[1] >= 0.0 {
+            return first_fall(&values, reach, |offset| {
+                in_lap(stop_at(dynamics, stop, offset), between_nodes(&values, reach, offset), lap)
+            });
         }
-        Some(reach)
+        reach *= SHORTER;
     }
+    Some(reach)
+}
 
-    /// Offset [s] at which the point of a stop on a closed rail passes it from behind, where it does not hold the
-    /// point: from then on it does.
-    pub(super) fn find_passing(&mut self, stop: Stop) -> Option<f64> {
-        let (lap, span) = (self.lap_of(stop)?, self.group.span);
-        let values = self.sample_stop(stop, span, Some(lap));
-        let room = |value: f64| lap + stop.slack - value;
-        first_fall(&values.map(room), span, |offset| {
-            room(in_lap(self.stop_at(stop, offset), between_nodes(&values, span, offset), Some(lap)))
-        })
+/// Offset [s] at which the point of a stop on a closed rail passes it from behind, where it does not hold the
+/// point: from then on it does.
+pub(crate) fn find_passing(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {
+    let (lap, span) = (lap_of(dynamics, stop)?, dynamics.group.span);
+    let values = sample_stop(dynamics, stop, span, Some(lap));
+    let room = |value: f64| lap + stop.slack - value;
+    first_fall(&values.map(room), span, |offset| {
+        room(in_lap(stop_at(dynamics, stop, offset), between_nodes(&values, span, offset), Some(lap)))
+    })
+}
+
+/// Length [m] of the rail of a stop; `None` if it is not closed.
+fn lap_of(dynamics: &Dynamics<'_>, stop: Stop) -> Option<f64> {
+    let path = dynamics.physics.mechanism.connectors[stop.id.index()].path();
+    path.filter(|path| path.is_closed()).map(|path| path.length())
+}
+
+/// Gaps of a stop [m], raised by its slack, at the nodes of a part of the segment [s].
+fn sample_stop(dynamics: &mut Dynamics<'_>, stop: Stop, reach: f64, lap: Option<f64>) -> [f64; NODES] {
+    let mut values = [0.0; NODES];
+    for index in 0..NODES {
+        let before = values[index.saturating_sub(1)];
+        let value = stop_at(dynamics, stop, node(index, reach));
+        values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
     }
+    values
+}
 
-    /// Length [m] of the rail of a stop; `None` if it is not closed.
-    fn lap_of(&self, stop: Stop) -> Option<f64> {
-        let path = self.physics.mechanism.connectors[stop.id.index()].path();
-        path.filter(|path| path.is_closed()).map(|path| path.length())
-    }
+/// Gap of a stop [m], raised by its slack, at an offset [s].
+fn stop_at(dynamics: &mut Dynamics<'_>, stop: Stop, offset: f64) -> f64 {
+    dynamics.place_at(offset);
+    let connector = &dynamics.physics.mechanism.connectors[stop.id.index()];
+    let [a, b] = connector.bodies().map(|body| moving_of(&dynamics.stage.movings, body));
+    connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
+}
 
-    /// Gaps of a stop [m], raised by its slack, at the nodes of a part of the segment [s].
-    fn sample_stop(&mut self, stop: Stop, reach: f64, lap: Option<f64>) -> [f64; NODES] {
-        let mut values = [0.0; NODES];
-        for index in 0..NODES {
-            let before = values[index.saturating_sub(1)];
-            let value = self.stop_at(stop, node(index, reach));
-            values[index] = if index == 0 { value } else { in_lap(value, before, lap) };
+fn switch_at(dynamics: &mut Dynamics<'_>, law: usize, index: usize, offset: f64) -> f64 {
+    dynamics.place_at(offset);
+    let now = dynamics.physics.snapshot(dynamics.start.seconds() + offset, &dynamics.stage.movings);
+    dynamics.physics.laws[law].switch(index, &now)
+}
+
+/// Offset [s] of the first change of sign of a switching function.
+pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> Option<f64> {
+    let (span, sign_at, sign) = (dynamics.group.span, sign_at(dynamics), sign_before(dynamics, law, index));
+    let values = std::array::from_fn(|node_index| {
+        let value = sign * switch_at(dynamics, law, index, node(node_index, span));
+        if node_index == 0 { value.max(0.0) } else { value }
+    });
+    let offset = first_fall(&values, span, |offset| {
+        let value = sign * switch_at(dynamics, law, index, offset);
+        if offset <= sign_at { value.max(0.0) } else { value }
+    })?;
+    Some(beyond_switch(dynamics, (law, index), sign, offset))
+}
+
+/// Offset [s] of the first change of sign of a switching function just after the end of the segment: so soon that the
+/// next step would have to go over it, however short. Dense output reaches that far beyond its end.
+pub(crate) fn find_switch_at_end(dynamics: &mut Dynamics<'_>) -> Option<f64> {
+    let mut earliest = Earliest::default();
+    for place in 0..dynamics.group.laws.len() {
+        let law = dynamics.group.laws[place];
+        for index in 0..dynamics.physics.laws[law].switches() {
+            earliest.offer(find_change_at_end(dynamics, law, index), SegmentEnd::Switch);
         }
-        values
     }
+    earliest.limit()
+}
 
-    /// Gap of a stop [m], raised by its slack, at an offset [s].
-    fn stop_at(&mut self, stop: Stop, offset: f64) -> f64 {
-        self.place_at(offset);
-        let connector = &self.physics.mechanism.connectors[stop.id.index()];
-        let [a, b] = connector.bodies().map(|body| moving_of(&self.stage.movings, body));
-        connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
+/// Offset [s] just after the end of the segment at which one switching function has changed its sign.
+fn find_change_at_end(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> Option<f64> {
+    let (span, tick, sign) =
+        (dynamics.group.span, dynamics.clock_ticks(1.0), sign_before(dynamics, law, index));
+    let offsets = TICKS_AFTER_END.map(|ticks| span + (ticks * tick).min(LOOK_AHEAD * span));
+    let is_changed =
+        |dynamics: &mut Dynamics<'_>, offset| sign * switch_at(dynamics, law, index, offset) < 0.0;
+    let found = offsets.iter().position(|&offset| is_changed(dynamics, offset))?;
+    let mut after = offsets[found];
+    let mut before = if found == 0 { span } else { offsets[found - 1] };
+    while after - before > 2.0 * tick {
+        let middle = f64::midpoint(before, after);
+        *(if is_changed(dynamics, middle) { &mut after } else { &mut before }) = middle;
     }
+    // Sums of clock times and offsets are rounded once more.
+    Some(after + tick)
+}
 
-    fn switch_at(&mut self, law: usize, index: usize, offset: f64) -> f64 {
-        self.place_at(offset);
-        let now = self.physics.snapshot(self.start.seconds() + offset, &self.stage.movings);
-        self.physics.laws[law].switch(index, &now)
-    }
+/// Sign of a switching function along the segment, before it changes. As a group is made just after a change, the
+/// function is zero: its sign is read a little later.
+fn sign_before(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> f64 {
+    let offset = sign_at(dynamics);
+    switch_at(dynamics, law, index, offset).signum()
+}
 
-    /// Offset [s] of the first change of sign of a switching function.
-    pub(super) fn find_switch(&mut self, law: usize, index: usize) -> Option<f64> {
-        let (span, sign_at, sign) = (self.group.span, self.sign_at(), self.sign_before(law, index));
-        let values = std::array::from_fn(|node_index| {
-            let value = sign * self.switch_at(law, index, node(node_index, span));
-            if node_index == 0 { value.max(0.0) } else { value }
-        });
-        let offset = first_fall(&values, span, |offset| {
-            let value = sign * self.switch_at(law, index, offset);
-            if offset <= sign_at { value.max(0.0) } else { value }
-        })?;
-        Some(self.beyond_switch((law, index), sign, offset))
-    }
+/// Offset [s] at which the signs of switching functions are read.
+fn sign_at(dynamics: &Dynamics<'_>) -> f64 {
+    let Group { span, start, made, .. } = *dynamics.group;
+    if start == made { span * SIGN_AT } else { 0.0 }
+}
 
-    /// Offset [s] of the first change of sign of a switching function just after the end of the segment: so soon that the
-    /// next step would have to go over it, however short. Dense output reaches that far beyond its end.
-    pub(crate) fn find_switch_at_end(&mut self) -> Option<f64> {
-        let mut earliest = Earliest::default();
-        for place in 0..self.group.laws.len() {
-            let law = self.group.laws[place];
-            for index in 0..self.physics.laws[law].switches() {
-                earliest.offer(self.find_change_at_end(law, index), SegmentEnd::Switch);
-            }
+/// First offset [s] that the clock resolves after a switching function has changed its sign from the given one,
+/// near where it does. Where the function is zero the law may take either branch, and a segment that starts there
+/// must be on the one that the law goes on with.
+fn beyond_switch(dynamics: &mut Dynamics<'_>, (law, index): (usize, usize), sign: f64, offset: f64) -> f64 {
+    // Sums of clock times and offsets are rounded once more.
+    let tick = dynamics.clock_ticks(1.0);
+    let mut wait = tick;
+    for _ in 0..MOST_TICKS {
+        if offset + wait + tick >= dynamics.group.span {
+            break;
         }
-        earliest.limit()
-    }
-
-    /// Offset [s] just after the end of the segment at which one switching function has changed its sign.
-    fn find_change_at_end(&mut self, law: usize, index: usize) -> Option<f64> {
-        let (span, tick, sign) = (self.group.span, self.clock_ticks(1.0), self.sign_before(law, index));
-        let offsets = TICKS_AFTER_END.map(|ticks| span + (ticks * tick).min(LOOK_AHEAD * span));
-        let is_changed = |dynamics: &mut Self, offset| sign * dynamics.switch_at(law, index, offset) < 0.0;
-        let found = offsets.iter().position(|&offset| is_changed(self, offset))?;
-        let mut after = offsets[found];
-        let mut before = if found == 0 { span } else { offsets[found - 1] };
-        while after - before > 2.0 * tick {
-            let middle = f64::midpoint(before, after);
-            *(if is_changed(self, middle) { &mut after } else { &mut before }) = middle;
+        if sign * switch_at(dynamics, law, index, offset + wait) < 0.0 {
+            return offset + wait + tick;
         }
-        // Sums of clock times and offsets are rounded once more.
-        Some(after + tick)
+        wait *= 2.0;
     }
-
-    /// A number [s] of ticks of the clock at the end of the segment.
-    pub(crate) fn clock_ticks(&self, count: f64) -> f64 {
-        let span = self.group.span;
-        count * f64::EPSILON * (self.start.seconds() + span).abs().max(span)
-    }
-
-    /// Sign of a switching function along the segment, before it changes. As a group is made just after a change, the
-    /// function is zero: its sign is read a little later.
-    fn sign_before(&mut self, law: usize, index: usize) -> f64 {
-        let offset = self.sign_at();
-        self.switch_at(law, index, offset).signum()
-    }
-
-    /// Offset [s] at which the signs of switching functions are read.
-    fn sign_at(&self) -> f64 {
-        let Group { span, start, made, .. } = *self.group;
-        if start == made { span * SIGN_AT } else { 0.0 }
-    }
-
-    /// First offset [s] that the clock resolves after a switching function has changed its sign from the given one,
-    /// near where it does. Where the function is zero the law may take either branch, and a segment that starts there
-    /// must be on the one that the law goes on with.
-    fn beyond_switch(&mut self, (law, index): (usize, usize), sign: f64, offset: f64) -> f64 {
-        // Sums of clock times and offsets are rounded once more.
-        let tick = self.clock_ticks(1.0);
-        let mut wait = tick;
-        for _ in 0..MOST_TICKS {
-            if offset + wait + tick >= self.group.span {
-                break;
-            }
-            if sign * self.switch_at(law, index, offset + wait) < 0.0 {
-                return offset + wait + tick;
-            }
-            wait *= 2.0;
-        }
-        offset
-    }
+    offset
 }
 
 /// Distance [m] along a closed path, known up to laps: the one nearest to another.
@@ -174,6 +168,7 @@ fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::find_switch;
     use crate::rigid::bodies::flyer::FlightLaw;
     use crate::rigid::bodies::law::{ForceLaw, Snapshot, Wrenches};
     use crate::rigid::group::groups::with_group;
@@ -228,7 +223,7 @@ mod tests {
         group.made = if is_first { later } else { Time::ZERO };
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             dynamics.group.span = 1.0;
-            dynamics.find_switch(0, 0)
+            find_switch(dynamics, 0, 0)
         })
     }
 

@@ -1,8 +1,7 @@
 //! The past that the limits decide by, for each body and for the system.
 
 use crate::rigid::error::AdvanceError;
-use crate::rigid::zeno::pace::Pace;
-use crate::rigid::zeno::storms::Recent;
+use crate::rigid::zeno::steps::Pace;
 use crate::time::Time;
 
 /// Recent events and steps, from which sequences that would never end are recognised.
@@ -35,4 +34,15 @@ impl Zeno {
             crawls: None,
         }
     }
+}
+
+/// Recent events of one body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Recent {
+    /// Time at which counting began; `None` if it has not.
+    pub(super) since: Option<Time>,
+    /// Storm load since then [-]: the sum of the loads of its events.
+    pub(super) load: usize,
+    /// Time of the last event, if there was any.
+    pub(super) last: Option<Time>,
 }

@@ -6,5 +6,6 @@
 pub(super) mod memory;
 pub(super) mod pace;
 pub(super) mod repeats;
+pub(super) mod steps;
 pub(super) mod storms;
 pub(super) mod turns;

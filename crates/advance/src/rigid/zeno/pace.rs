@@ -13,56 +13,20 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::group::dynamics::body_state;
-use crate::rigid::group::group::Group;
-use crate::rigid::region::region::Region;
+use crate::rigid::group::state::Group;
 use crate::rigid::zeno::memory::Zeno;
+use crate::rigid::zeno::steps::Pace;
 use crate::rigid::zeno::turns::too_fast;
-use crate::time::Time;
 use halfgap_collision::{BodyId, BodyState};
 use std::f64::consts::TAU;
 
-/// Number of steps in succession over which one mean length is taken.
-const STEPS: u32 = 10_000;
 /// Number of steps that no run may take: a mean length is hopeless if the total time would take more steps of it.
 const HOPELESS: f64 = 1e10;
 /// Number of hopeless means in succession after which the run is given up: steps may be short for a while.
 const PACES: u32 = 10;
 
-/// Number of steps in succession over whose mean length a group is found to be hasty.
-const FEW_STEPS: u32 = 64;
 /// A group is hasty if that mean is less than this fraction of the resolution time.
 const HASTE: f64 = 1e-4;
-
-/// The recent steps of a group, kept for the body that leads it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pace {
-    all: Count<STEPS>,
-    few: Count<FEW_STEPS>,
-    /// Number of hopeless means in succession.
-    hopeless: u32,
-    is_hasty: bool,
-}
-
-/// Takes the mean length of every `STEPS` steps.
-#[derive(Clone, Copy, Debug, Default)]
-struct Count<const STEPS: u32> {
-    /// Time at which counting began; `None` if it has not.
-    since: Option<Time>,
-    steps: u32,
-}
-
-impl<const STEPS: u32> Count<STEPS> {
-    /// Notes a step that begins at a time; after every `STEPS` steps returns their mean length [s].
-    fn note(&mut self, start: Time) -> Option<f64> {
-        let since = *self.since.get_or_insert(start);
-        if self.steps < STEPS {
-            self.steps += 1;
-            return None;
-        }
-        *self = Self { since: Some(start), steps: 1 };
-        Some(start.since(since) / f64::from(STEPS))
-    }
-}
 
 /// Notes the step that a group has begun. If its steps have become hopelessly short, the error is kept in the
 /// memory, to be returned once the event is over.
@@ -114,10 +78,10 @@ pub(crate) fn forget_paces(zeno: &mut Zeno, bodies: &[BodyId]) {
     bodies.iter().for_each(|body| zeno.paces[body.index()] = Pace::default());
 }
 
-/// True if a body of a region has led a hasty group; that is then forgotten.
-pub(crate) fn take_haste(zeno: &mut Zeno, region: &Region) -> bool {
+/// True if one of some bodies has led a hasty group; that is then forgotten.
+pub(crate) fn take_haste(zeno: &mut Zeno, bodies: &[BodyId]) -> bool {
     let mut any = false;
-    for body in &region.bodies {
+    for body in bodies {
         any |= std::mem::take(&mut zeno.paces[body.index()].is_hasty);
     }
     any
@@ -128,6 +92,8 @@ mod tests {
     use super::*;
     use crate::rigid::region::collecting::collect_region;
     use crate::rigid::test_scene::resting_discs;
+    use crate::rigid::zeno::steps::{Count, FEW_STEPS, STEPS};
+    use crate::time::Time;
 
     /// Hastiness of the group of a disc that makes 64 steps of a length [s] in succession, by a first and by a second
     /// query.
@@ -140,7 +106,7 @@ mod tests {
             note_pace(&rooms.assembly, &mut rooms.zeno, &group);
             group.start = group.start.plus(step);
         }
-        [take_haste(&mut rooms.zeno, &work.region), take_haste(&mut rooms.zeno, &work.region)]
+        [take_haste(&mut rooms.zeno, &work.region.bodies), take_haste(&mut rooms.zeno, &work.region.bodies)]
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! without elasticity and fire at a lower gap (see `rules`), beyond a second the advance fails as stuck.
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::instant::is_same_time;
 use crate::rigid::contacts::pairs::{PairId, Pairs};
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::zeno::memory::Zeno;
@@ -11,8 +12,6 @@ use crate::time::Time;
 pub(crate) const CALM_REPEATS: u32 = 20;
 /// Number of collisions of a pair at one time beyond which the advance is stuck.
 const MOST_REPEATS: u32 = 100;
-/// Two events are at one time if they differ by at most this multiple of machine epsilon times the clock.
-const SAME_TIME: f64 = 4.0;
 
 /// True if a group was ended at a time as soon as it was made, because one of its contacts pulled.
 pub(crate) fn has_pulled(zeno: &Zeno, time: Time) -> bool {
@@ -48,11 +47,6 @@ pub(crate) fn note_repeat(
         return Err(AdvanceError::Stuck { time: now.seconds(), between, events });
     }
     Ok(events)
-}
-
-/// True if no time but rounding lies between two events.
-pub(crate) fn is_same_time(earlier: Time, later: Time) -> bool {
-    later.since(earlier) <= SAME_TIME * f64::EPSILON * later.seconds().abs()
 }
 
 #[cfg(test)]

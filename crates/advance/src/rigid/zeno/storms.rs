@@ -9,12 +9,10 @@
 //! the masses' ratio; a die that jams in its slot is turned back by blows between which it moves by a gap or two.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::books::Books;
+use crate::rigid::books::all::Books;
 use crate::rigid::contacts::rows::row_of;
-use crate::rigid::region::region::Region;
-use crate::rigid::zeno::memory::Zeno;
-use crate::time::Time;
-use halfgap_collision::Tolerances;
+use crate::rigid::zeno::memory::{Recent, Zeno};
+use halfgap_collision::{BodyId, Collision, Tolerances};
 
 /// Number of events of a body within the resolution time that are no storm yet, if they are neither wide nor costly.
 const CALM_EVENTS: usize = 20;
@@ -42,28 +40,23 @@ const STILL: f64 = 1e-6;
 /// scene's speed crosses the radius of the smallest body.
 const AT_ONCE: f64 = 1e-8;
 
-/// Recent events of one body.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Recent {
-    /// Time at which counting began; `None` if it has not.
-    since: Option<Time>,
-    /// Storm load since then [-]: the sum of the loads of its events.
-    load: usize,
-    /// Time of the last event, if there was any.
-    last: Option<Time>,
-}
-
-/// Adds an event to the storm loads of the bodies of a region; true if it makes a storm.
-pub(crate) fn note_events(assembly: &Assembly, zeno: &mut Zeno, books: &mut Books, region: &Region) -> bool {
+/// Adds an event of some bodies and the records of their contacts to the storm loads of these bodies; true if it makes a storm.
+pub(crate) fn note_events(
+    assembly: &Assembly,
+    zeno: &mut Zeno,
+    books: &mut Books,
+    of: (&[BodyId], &[Collision]),
+) -> bool {
+    let (bodies, records) = of;
     let (now, window) = (assembly.now, assembly.settings.resolution_time);
-    let speed = region.records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
+    let speed = records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
     let Tolerances { target_gap, accuracy, .. } = assembly.settings.tolerances;
     let (wide, still) = (WIDE * target_gap, STILL * accuracy);
     let at_once = AT_ONCE * assembly.settings.steps.length / assembly.settings.steps.speed;
-    let is_often = region.bodies.iter().any(|body| zeno.recent[body.index()].load > LOAD_WITHOUT_COST);
-    let is_costly = is_often && is_costly(assembly, region);
+    let is_often = bodies.iter().any(|body| zeno.recent[body.index()].load > LOAD_WITHOUT_COST);
+    let is_costly = is_often && is_costly(assembly, of);
     let mut most = 0;
-    for &body in &region.bodies {
+    for &body in bodies {
         let recent = &mut zeno.recent[body.index()];
         let wait = recent.last.map(|last| now.since(last));
         let way = wait.map(|wait| wait * speed);
@@ -80,26 +73,26 @@ pub(crate) fn note_events(assembly: &Assembly, zeno: &mut Zeno, books: &mut Book
         recent.last = Some(now);
         most = most.max(recent.load);
     }
-    let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * region.records.len();
+    let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * records.len();
     let is_storm = most > LOAD_OF_NEITHER * calm;
     if is_storm {
         books.counts.storms += 1;
-        for &body in &region.bodies {
+        for &body in bodies {
             zeno.recent[body.index()].load = 0;
         }
     }
     is_storm
 }
 
-/// True if stopping one of the contacts that close in a region would take more than [`COSTLY`] of the kinetic
+/// True if stopping one of the contacts that close would take more than [`COSTLY`] of the kinetic
 /// energy of its bodies.
-fn is_costly(assembly: &Assembly, region: &Region) -> bool {
-    let closing = region.records.iter().map(|record| {
+fn is_costly(assembly: &Assembly, (bodies, records): (&[BodyId], &[Collision])) -> bool {
+    let closing = records.iter().map(|record| {
         let row = row_of(assembly, record);
         let (rate, inverse_mass) = (row.rate.min(0.0), row.coupling(&row));
         if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
     });
-    let moving = region.bodies.iter().map(|&body| {
+    let moving = bodies.iter().map(|&body| {
         let flyer = assembly.flyer(body);
         flyer.body().kinetic_energy(&flyer.state_at(assembly.now))
     });

@@ -3,7 +3,7 @@
 use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::contacts::rows::{HeldRow, Mechanism, RowSource, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::{Bundle, Hinge, JointTree, Link, Stance};
 use crate::rigid::settings::RigidSettings;
 use glam::DVec2;

@@ -3,7 +3,7 @@
 //! sweep from the tips to the roots finds them, where the pins' rows of a body with many arms would make a full matrix.
 
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::Hinge;
 use glam::DVec2;
 

@@ -7,7 +7,7 @@
 //! leave: it vanishes in singular configurations (see `singular`).
 
 use crate::rigid::group::dynamics::{Dynamics, Stage};
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::{Hinge, JointTree};
 use glam::DVec2;
 
@@ -51,7 +51,7 @@ pub(super) struct LoopRows {
 
 impl JointTree {
     /// Factorises G for the rows in their order, after the sweep inwards.
-    fn factorize(&mut self, jacobians: &[[f64; 6]], sides: impl Fn(usize) -> [Option<u32>; 2]) {
+    pub(crate) fn factorize(&mut self, jacobians: &[[f64; 6]], sides: impl Fn(usize) -> [Option<u32>; 2]) {
         let bodies = self.links.len();
         let mut columns = std::mem::take(&mut self.loop_rows.columns);
         columns.clear();

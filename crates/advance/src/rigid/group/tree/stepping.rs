@@ -2,7 +2,7 @@
 
 use crate::ode::{Ode, Point, SegmentPolynomial, Stepper, StiffnessEstimate};
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::group::Group;
+use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::Hinge;
 use glam::DVec2;
 use std::convert::Infallible;

@@ -5,7 +5,7 @@ use crate::rigid::connectors::store::Stop;
 use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::group::loops::Loops;
 use crate::rigid::group::singular::Kept;
-use crate::rigid::group::stiff::Stiffness;
+use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::group::tree::JointTree;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId};

@@ -1,0 +1,89 @@
+//! How an event goes on once velocities are known: held rows, groups, predictions.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::instant::is_same_time;
+use crate::rigid::books::all::Books;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::bounces::note_seen;
+use crate::rigid::contacts::gaps::features_in;
+use crate::rigid::contacts::rows::RowSource;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::event::corners::leave_loose_corner;
+use crate::rigid::event::harm::regroup_soundly;
+use crate::rigid::event::rails::note_rails;
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::rules::{lower_insistent, set_rules};
+use crate::rigid::event::settling::settle_and_still;
+use crate::rigid::event::telling::note_begins;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::touching::{Region, measure_touches};
+use crate::rigid::zeno::pace::take_haste;
+use crate::rigid::zeno::repeats::has_pulled;
+use halfgap_geometry::GapSample;
+
+/// Finds the held rows, makes groups, and predicts: the bodies of the region are in flight with their new
+/// velocities.
+pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
+    for &body in &work.region.bodies {
+        rooms.assembly.flyers[body.index()].unwind();
+    }
+    note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now);
+    // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
+    work.region.is_hasty =
+        take_haste(&mut rooms.zeno, &work.region.bodies) || has_pulled(&rooms.zeno, rooms.assembly.now);
+    settle_and_still(rooms, work)?;
+    while leave_loose_corner(rooms, work)? {
+        settle_and_still(rooms, work)?;
+    }
+    measure_touches(&rooms.assembly, &mut work.region);
+    note_gaps(&rooms.assembly, &mut rooms.books, &work.region);
+    let touching = work.region.touches.iter().copied().zip(work.region.motions.iter().copied());
+    let fired = work.region.cause.fired().map(|touch| (touch, work.fired_open));
+    note_seen(&rooms.assembly, &mut rooms.pairs, touching, fired);
+    let outcome = regroup_soundly(rooms, work);
+    note_begins(&rooms.assembly, &mut rooms.books, &work.region, &work.settling);
+    outcome?;
+    set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, work);
+    if rooms.zeno.last_insistent.is_some_and(|last| is_same_time(last, rooms.assembly.now)) {
+        lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
+    }
+    for &body in &work.region.bodies {
+        rooms.searching().renew_stay(body);
+    }
+    rooms.searching().predict_all_of(&work.region.bodies, true);
+    note_held_connectors(&mut rooms.connectors, &work.region, &work.settling);
+    rooms.searching().predict_ropes(&work.region.bodies);
+    Ok(())
+}
+
+/// Notes the least gap of features of a region that lie opposite each other: beyond their ends a gap is no distance
+/// between bodies.
+fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
+    for (&touch, &(gap, _)) in region.touches.iter().zip(&region.motions) {
+        if books.counts.smallest_gap.is_some_and(|least| least <= gap) {
+            continue;
+        }
+        let [a, b] = features_in(assembly, touch);
+        let pose = touch.bodies.map(|body| assembly.flyer(body).moving_at(assembly.now).pose);
+        let is_opposite =
+            |sample: GapSample| sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= 0.0;
+        if GapSample::measure(a, &pose[0], b, &pose[1]).is_some_and(is_opposite) {
+            books.counts.note_gap(gap);
+        }
+    }
+}
+
+/// Notes which unilateral connectors of a region are held from now on.
+fn note_held_connectors(connectors: &mut Connectors, region: &Region, settling: &Settling) {
+    for &body in &region.bodies {
+        for index in 0..connectors.of(body).len() {
+            let id = connectors.of(body)[index];
+            if !connectors.connector(id).is_bilateral() {
+                let mut held = settling.held.iter();
+                let is_held = held.any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                connectors.states[id.index()].held = is_held;
+            }
+        }
+    }
+}

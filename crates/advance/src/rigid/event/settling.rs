@@ -1,0 +1,48 @@
+//! The rows that are held after an event, once low hops are stilled.
+
+use crate::rigid::contacts::pairs::is_likely;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::event::hops::still_hops;
+use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::held::hops::any_held_hops;
+use crate::rigid::held::settle::settle;
+use crate::rigid::region::cause::Cause;
+use crate::rigid::zeno::repeats::has_pulled;
+
+/// Largest number of rounds in which the low hops of one event are stilled.
+const HOP_ROUNDS: u32 = 4;
+
+/// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.
+pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
+    let EventWork { region, settling, .. } = &mut *work;
+    settling.set_likely(region.records.iter().map(|record| is_likely(&rooms.pairs, record)));
+    settling.expect_forces(region, &rooms.books.told.changes.end);
+    let may_hop = work.region.cause != Cause::Start && !work.region.is_hasty;
+    settle_region(rooms, work, may_hop)?;
+    for round in 1..=HOP_ROUNDS {
+        if !any_held_hops(&rooms.assembly, &work.region, &work.settling) {
+            break;
+        }
+        let is_stilled =
+            still_hops(&mut rooms.assembly, &rooms.connectors, &rooms.pairs, &mut rooms.books, work);
+        let with_hops = is_stilled && may_hop && round < HOP_ROUNDS;
+        settle_region(rooms, work, with_hops)?;
+    }
+    Ok(())
+}
+
+fn settle_region(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
+    let mut stage = std::mem::take(&mut rooms.groups.stage);
+    work.settling.has_pulled = has_pulled(&rooms.zeno, rooms.assembly.now);
+    let outcome = settle(
+        &rooms.view(),
+        &mut work.region,
+        &mut work.settling,
+        &mut stage,
+        rooms.assembly.now,
+        with_hops,
+    );
+    rooms.groups.stage = stage;
+    outcome
+}

@@ -1,0 +1,51 @@
+//! What callers are told of the contacts that an event lets begin.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::all::Books;
+use crate::rigid::books::report::RowForce;
+use crate::rigid::contacts::rows::{HeldRow, RowSource};
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::touching::Region;
+use halfgap_collision::Collision;
+
+/// Notes the unilateral rows that are held from now on.
+pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Region, settling: &Settling) {
+    for (index, row) in settling.held.iter().filter(|(_, row)| !row.bilateral) {
+        let told = RowForce {
+            bouncing: bouncing(assembly, books, region, settling),
+            ..told_of(&region.records[*index], row)
+        };
+        books.told.changes.begin.push(told);
+    }
+    books.told.drop_continued();
+}
+
+/// Duration [s] of the bounces that a single contact which was just captured would have gone on to make.
+///
+/// After an impact at the speed v each flight lasts 2 v/a, and v falls by e each time: 2 e v/(a (1 - e)) in all.
+fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Settling) -> Option<f64> {
+    let ([record], Some(acceleration)) = (region.records.as_slice(), settling.closing_acceleration()) else {
+        return None;
+    };
+    let impact =
+        books.told.last_impact.rows.first().filter(|_| books.told.last_impact.time == assembly.now)?;
+    let elasticity = record.response.elasticity;
+    let closing = (-impact.rate_before).max(0.0);
+    (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
+}
+
+fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
+    let features = match row.source {
+        RowSource::Contact(features) => Some(features),
+        RowSource::Connector(..) => None,
+    };
+    RowForce {
+        bodies: row.bodies,
+        connector: record.connector(),
+        features,
+        point: record.geometry.point_primary,
+        normal: record.geometry.normal,
+        force: record.response.force.unwrap_or(0.0),
+        bouncing: None,
+    }
+}

@@ -1,0 +1,36 @@
+//! Contacts that are let pass: near a dead point they act by next to no lever.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::touch::Touch;
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::touching::Region;
+use crate::rigid::search::graze::{grazing_gap, is_tied};
+
+/// A lever is next to none below this fraction of what it would be without the connectors.
+const LEVER: f64 = 1e-3;
+
+/// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
+/// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
+/// been left out.
+pub(crate) fn let_pass(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    settling: &mut Settling,
+) -> bool {
+    let Settling { candidates, passing, levers, .. } = settling;
+    levers.load(region, |body| assembly.inertia(body));
+    candidates.retain(|&index| {
+        let record = &region.records[index];
+        let bodies = record.bodies();
+        let passes = !record.parties.bilateral
+            && record.geometry.distance > grazing_gap(assembly, bodies)
+            && bodies.iter().any(|&body| is_tied(connectors, body))
+            && levers.left_of(region, record, |body| assembly.inertia(body)) < LEVER * LEVER;
+        let touch = Touch::of(record).filter(|_| passes);
+        passing.extend(touch);
+        touch.is_none()
+    });
+    !settling.passing.is_empty()
+}

@@ -1,0 +1,61 @@
+//! Candidates that are spared: as equations they would depend on others.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::group::dynamics::Stage;
+use crate::rigid::held::jammed::is_jam;
+use crate::rigid::held::redundant::{NEARLY, Redundant, Rows};
+use crate::rigid::held::settling::Settling;
+use crate::rigid::region::cause::Cause;
+use crate::rigid::region::touching::Region;
+
+/// Spares candidates until none depends on the others, such that the remaining contacts do not pull if none pulled
+/// in the solution found. In a jam, whose rows contradict each other, none is spared; nor at the start, unless a
+/// contact would pull by elimination. The problem must be that of the candidates.
+pub(crate) fn spare_redundant(
+    assembly: &Assembly,
+    region: &mut Region,
+    settling: &mut Settling,
+    stage: &Stage,
+) {
+    let Settling { candidates, redundant, problem, .. } = settling;
+    let Redundant { rows, held, as_held, .. } = redundant;
+    list_candidates(assembly, region, candidates, rows);
+    let largest = rows.largest_force();
+    if is_jam(assembly, region, stage, largest) {
+        return;
+    }
+    let is_start = region.cause == Cause::Start;
+    if is_start && (rows.factorize(held) == 0 || !rows.pulls(held, problem.offset(), as_held)) {
+        return;
+    }
+    rows.spare(held, region, candidates);
+}
+
+/// Spares candidates until none nearly depends on the others, if any does. Forces that are spread over such rows
+/// are modest; as equations, the rows would have immense ones.
+pub(crate) fn spare_nearly_redundant(assembly: &Assembly, region: &mut Region, settling: &mut Settling) {
+    let Settling { candidates, redundant, .. } = settling;
+    let Redundant { rows, held, nearly, .. } = redundant;
+    list_candidates(assembly, region, candidates, rows);
+    let dependent = rows.factorize(held);
+    if held.kept_beyond(dependent) <= NEARLY {
+        rows.spare(nearly, region, candidates);
+    }
+}
+
+/// Lists the rows of the candidates and their forces.
+fn list_candidates(assembly: &Assembly, region: &Region, candidates: &[usize], rows: &mut Rows) {
+    let Rows { inertia, sides, jacobians, forces, bilateral, .. } = rows;
+    inertia.clear();
+    inertia.extend(region.bodies.iter().map(|&body| assembly.inertia(body)));
+    let records = || candidates.iter().map(|&index| &region.records[index]);
+    sides.clear();
+    let place = |body| region.place(body).and_then(|place| u32::try_from(place).ok());
+    sides.extend(records().map(|record| record.bodies().map(place)));
+    jacobians.clear();
+    jacobians.extend(records().map(|record| record.motion.kinematics.jacobian));
+    forces.clear();
+    forces.extend(records().map(|record| record.response.force.unwrap_or_default()));
+    bilateral.clear();
+    bilateral.extend(records().map(|record| record.parties.bilateral));
+}

@@ -1,0 +1,68 @@
+//! A group's next segment, with the event that ends it early.
+
+use crate::rigid::group::attempt::StepFailure;
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::state::SegmentEnd;
+use crate::rigid::group::tools::Tools;
+use crate::rigid::watch::early_ends::find_event;
+use crate::rigid::watch::switches::find_switch_at_end;
+
+/// Extends the group by a step, and finds the event that ends it early.
+pub(crate) fn extend_watched(dynamics: &mut Dynamics<'_>, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
+    if !dynamics.group.is_unwatched {
+        let proposed = dynamics.group.next_step;
+        let told = dynamics.extend_on_rows(tools)?;
+        dynamics.note_stiffness(tools, told);
+        find_event(dynamics);
+        return end_before_switch(dynamics, tools, proposed);
+    }
+    let told = dynamics.extend_unwatched(tools)?;
+    dynamics.note_stiffness(tools, told);
+    dynamics.limit_next_step(tools.stepper.method().step_factor(0.0));
+    (dynamics.group.event, dynamics.group.look) = (None, None);
+    // Of projected ends only rounding is left, so the gaps of the last evaluation tell.
+    let is_projected = tools.settings.projection;
+    dynamics.group.largest_error =
+        if is_projected { dynamics.stage.gap_error } else { dynamics.connector_error() };
+    Ok(())
+}
+
+/// Makes a step over a change of a law's branch anew, so that it ends just before the change. Stages beyond it have
+/// the forces of another branch: with them a step may err by any amount, unseen by its error estimate, and so may its
+/// dense output, by which the change was found. The next step is then as long as this one was `proposed` [s] to be.
+fn end_before_switch(
+    dynamics: &mut Dynamics<'_>,
+    tools: &mut Tools<'_>,
+    proposed: Option<f64>,
+) -> Result<(), StepFailure> {
+    if dynamics.group.laws.is_empty() || !tools.stepper.method().is_adaptive() {
+        return Ok(());
+    }
+    let mut before = dynamics.clock_ticks(TICKS_BEFORE_SWITCH);
+    for _ in 0..MOST_APPROACHES {
+        let Some((offset, SegmentEnd::Switch)) = dynamics.group.event else { break };
+        if offset <= 2.0 * before {
+            break;
+        }
+        dynamics.group.next_step = Some(offset - before);
+        dynamics.extend_on_rows(tools)?;
+        find_event(dynamics);
+        if let (Some(next), Some(proposed)) = (&mut dynamics.group.next_step, proposed) {
+            *next = next.max(proposed);
+        }
+        before *= WIDER;
+    }
+    if dynamics.group.event.is_none() {
+        dynamics.group.event = find_switch_at_end(dynamics).map(|offset| (offset, SegmentEnd::Switch));
+    }
+    Ok(())
+}
+
+/// Time before a change of a law's branch at which a step ends, in ticks of the clock.
+const TICKS_BEFORE_SWITCH: f64 = 64.0;
+
+/// Factor by which that time grows where the change then turns out to come earlier.
+const WIDER: f64 = 8.0;
+
+/// Largest number of steps that are tried before a change.
+const MOST_APPROACHES: usize = 8;
