@@ -76,7 +76,7 @@ impl RigidSystem {
     #[must_use]
     #[inline]
     pub fn counts(&self) -> Counts {
-        let (stage, counts) = (&self.rooms.groups.stage, self.rooms.books.counts);
+        let (stage, counts) = (&self.rooms.groups.stage, self.rooms.books.counts());
         let contact_solves = counts.contact_solves + stage.solves;
         Counts { evaluations: stage.evaluations, contact_solves, ..counts }
     }
@@ -85,43 +85,43 @@ impl RigidSystem {
     #[must_use]
     #[inline]
     pub fn settings(&self) -> &RigidSettings {
-        &self.rooms.assembly.settings
+        self.rooms.assembly.settings()
     }
 
     /// Report of the last impact; empty if there was none.
     #[must_use]
     #[inline]
     pub fn last_impact(&self) -> &ImpactReport {
-        &self.rooms.books.told.last_impact
+        self.rooms.books.told().last_impact()
     }
 
     /// The impact of the event that then failed, if it got that far: booked in the ledger, not reported.
     #[must_use]
     #[inline]
     pub fn untold_impact(&self) -> Option<&ImpactReport> {
-        let told = &self.rooms.books.told;
-        (told.failure.is_some() && told.has_hit).then_some(&told.last_impact)
+        let told = self.rooms.books.told();
+        (told.failure().is_some() && told.has_hit()).then_some(told.last_impact())
     }
 
     /// Unilateral rows whose holding began or ended in the last event.
     #[must_use]
     #[inline]
     pub fn contact_changes(&self) -> &ContactChanges {
-        &self.rooms.books.told.changes
+        self.rooms.books.told().changes()
     }
 
     /// Error of the last event, if it could not be handled: the system cannot go on from it.
     #[must_use]
     #[inline]
     pub fn failure(&self) -> Option<&AdvanceError> {
-        self.rooms.books.told.failure.as_ref()
+        self.rooms.books.told().failure().as_ref()
     }
 
     /// Time of the last event handled.
     #[must_use]
     #[inline]
     pub fn now(&self) -> Time {
-        self.rooms.assembly.now
+        self.rooms.assembly.now()
     }
 
     /// True if the force law at an index has a potential; the work of a law without one is in the ledger.
@@ -131,13 +131,13 @@ impl RigidSystem {
     #[must_use]
     #[inline]
     pub fn has_potential(&self, law: usize) -> bool {
-        self.rooms.assembly.laws.has_potential[law]
+        self.rooms.assembly.laws().has_potential[law]
     }
 
     /// Force laws, in the order of their indices.
     #[must_use]
     pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
-        &self.rooms.assembly.laws.all
+        &self.rooms.assembly.laws().all
     }
 
     /// Place on its path near which the point of a rail or of a rail's stop is sought at a time, which must not be
@@ -189,7 +189,7 @@ impl RigidSystem {
     /// never returned. These errors leave the system valid: with a lesser duration set, it can be advanced further.
     #[inline]
     pub fn set_duration(&mut self, duration: f64) {
-        self.rooms.zeno.duration = duration;
+        self.rooms.zeno.set_duration(duration);
     }
 
     /// Changes velocities of bodies at a time, all at once: connectors and contacts against which they move then
@@ -210,7 +210,7 @@ impl RigidSystem {
     ) -> Result<Option<Handled>, AdvanceError> {
         check_finite(time, changes)?;
         let rooms = &mut self.rooms;
-        let outcome = happen(rooms, time.max(rooms.assembly.now), |rooms| {
+        let outcome = happen(rooms, time.max(rooms.assembly.now()), |rooms| {
             with_work(rooms, Cause::Other, |rooms, work| change_velocities(rooms, work, changes))
         });
         finish(rooms);

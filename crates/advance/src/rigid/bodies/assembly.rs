@@ -23,27 +23,27 @@ pub(crate) struct Shared {
 /// All bodies with their motions at the present time.
 #[derive(Clone, Debug)]
 pub(crate) struct Assembly {
-    pub(crate) settings: RigidSettings,
-    pub(crate) flyers: Vec<Flyer>,
+    pub(super) settings: RigidSettings,
+    pub(super) flyers: Vec<Flyer>,
     /// True for bodies that cannot move.
-    pub(crate) is_fixed: Vec<bool>,
-    pub(crate) laws: Laws,
+    pub(super) is_fixed: Vec<bool>,
+    pub(super) laws: Laws,
     /// True if some masses differ beyond the ratio that can be held together.
-    pub(crate) masses_are_extreme: bool,
+    pub(super) masses_are_extreme: bool,
     /// True if nothing but contacts and connectors accelerates bodies.
-    pub(crate) is_forceless: bool,
+    pub(super) is_forceless: bool,
     /// Time at which the system started.
-    pub(crate) start: Time,
+    pub(super) start: Time,
     /// Time of the last event handled.
-    pub(crate) now: Time,
+    pub(super) now: Time,
     /// Time at which an impulse last changed the velocity of each body.
-    pub(crate) struck: Vec<Option<Time>>,
+    pub(super) struck: Vec<Option<Time>>,
     /// The body that leads each body's group, if it is in one.
-    pub(crate) leader_of: Vec<Option<BodyId>>,
+    pub(super) leader_of: Vec<Option<BodyId>>,
     /// The segment of the group that each body leads; kept from the last one where it leads none.
-    pub(crate) shared: Vec<Shared>,
+    pub(super) shared: Vec<Shared>,
     /// Penetration [m] of the deepest contact of each body's last group, and the time at which the group ended.
-    pub(crate) sunk: Vec<(f64, Time)>,
+    pub(super) sunk: Vec<(f64, Time)>,
 }
 
 /// Depth of other contacts of two bodies as a multiple of that to which one has sunk.
@@ -86,6 +86,54 @@ impl Assembly {
     #[inline]
     pub(crate) fn flyer(&self, body: BodyId) -> &Flyer {
         &self.flyers[body.index()]
+    }
+
+    /// A body with its present segment, to be moved.
+    #[inline]
+    pub(crate) fn flyer_mut(&mut self, body: BodyId) -> &mut Flyer {
+        &mut self.flyers[body.index()]
+    }
+
+    /// Goes on to a time, or back by a little where an event turns out to come earlier.
+    pub(crate) fn set_now(&mut self, now: Time) {
+        self.now = now;
+    }
+
+    /// Notes that a body is in a group that another leads.
+    pub(crate) fn lead(&mut self, body: BodyId, leader: BodyId) {
+        self.leader_of[body.index()] = Some(leader);
+    }
+
+    /// Notes that a body is in no group any more.
+    pub(crate) fn part(&mut self, body: BodyId) {
+        self.leader_of[body.index()] = None;
+    }
+
+    /// Notes the segment of the group that a body leads.
+    pub(crate) fn share(&mut self, leader: BodyId, shared: Shared) {
+        self.shared[leader.index()] = shared;
+    }
+
+    /// Notes the depth [m] of the deepest contact of a body's group, which ends now.
+    pub(crate) fn note_sunk(&mut self, body: BodyId, depth: f64) {
+        self.sunk[body.index()] = (depth, self.now);
+    }
+
+    /// Notes that an impulse changes the velocity of a body at a time.
+    pub(crate) fn note_struck(&mut self, body: BodyId, time: Time) {
+        self.struck[body.index()] = Some(time);
+    }
+
+    /// The settings, for tests that change them.
+    #[cfg(test)]
+    pub(crate) fn settings_mut(&mut self) -> &mut RigidSettings {
+        &mut self.settings
+    }
+
+    /// Sets the force laws, for tests, without listing the bodies that they act on.
+    #[cfg(test)]
+    pub(crate) fn set_laws(&mut self, laws: Vec<std::sync::Arc<dyn crate::rigid::ForceLaw>>) {
+        self.laws.all = laws;
     }
 
     /// True for a body that can move.
@@ -273,5 +321,50 @@ impl Assembly {
     /// Kinetic energy [J] of a movable body in a state.
     pub(crate) fn kinetic_energy(&self, body: BodyId, state: &BodyState) -> f64 {
         self.flyer(body).body().kinetic_energy(state)
+    }
+}
+
+impl Assembly {
+    // getters of Assembly
+    /// The flyers.
+    #[inline]
+    pub(crate) fn flyers(&self) -> &[Flyer] {
+        &self.flyers
+    }
+
+    /// The laws.
+    #[inline]
+    pub(crate) fn laws(&self) -> &Laws {
+        &self.laws
+    }
+
+    /// The body that leads each body's group, if it is in one.
+    #[inline]
+    pub(crate) fn leader_of(&self) -> &[Option<BodyId>] {
+        &self.leader_of
+    }
+
+    /// Time of the last event handled.
+    #[inline]
+    pub(crate) fn now(&self) -> Time {
+        self.now
+    }
+
+    /// The settings.
+    #[inline]
+    pub(crate) fn settings(&self) -> &RigidSettings {
+        &self.settings
+    }
+
+    /// Time at which the system started.
+    #[inline]
+    pub(crate) fn start(&self) -> Time {
+        self.start
+    }
+
+    /// Time at which an impulse last changed the velocity of each body.
+    #[inline]
+    pub(crate) fn struck(&self) -> &[Option<Time>] {
+        &self.struck
     }
 }

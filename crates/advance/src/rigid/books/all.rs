@@ -2,12 +2,139 @@
 
 use crate::rigid::books::counts::Counts;
 use crate::rigid::books::ledger::Ledger;
-use crate::rigid::books::report::Told;
+use crate::rigid::books::report::{ImpactReport, RowForce, Told};
+use crate::rigid::error::AdvanceError;
+use crate::rigid::group::state::Work;
+use crate::time::Time;
 
 /// Counts, ledger and report of a system.
 #[derive(Clone, Debug)]
 pub(crate) struct Books {
-    pub(crate) counts: Counts,
-    pub(crate) ledger: Ledger,
-    pub(crate) told: Told,
+    pub(super) counts: Counts,
+    pub(super) ledger: Ledger,
+    pub(super) told: Told,
+}
+
+impl Books {
+    // getters of Books
+    /// The counts.
+    #[inline]
+    pub(crate) fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// The ledger.
+    #[inline]
+    pub(crate) fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// The told.
+    #[inline]
+    pub(crate) fn told(&self) -> &Told {
+        &self.told
+    }
+}
+
+impl Books {
+    /// Empty books of a system with so many bodies in flight and so many force laws.
+    pub(crate) fn new(movable: usize, laws: usize) -> Self {
+        Self {
+            counts: Counts { segments: movable as u64, ..Counts::default() },
+            ledger: Ledger { laws: vec![0.0; laws], ..Ledger::default() },
+            told: Told::default(),
+        }
+    }
+
+    /// Begins an event at a time, of which nothing is told yet.
+    pub(crate) fn begin_event(&mut self, time: Time) {
+        self.counts.events += 1;
+        self.told.begin(time);
+    }
+
+    /// Corrects the time of the present event.
+    pub(crate) fn set_told_time(&mut self, time: Time) {
+        self.told.changes.time = time;
+    }
+
+    /// Notes the error of the present event, if it could not be handled.
+    pub(crate) fn note_outcome(&mut self, outcome: &Result<(), AdvanceError>) {
+        self.told.failure = outcome.as_ref().err().cloned();
+    }
+
+    /// Notes that the present event contains an impact.
+    pub(crate) fn note_impact(&mut self) {
+        self.told.has_hit = true;
+        self.counts.impacts += 1;
+    }
+
+    /// Takes out the report of the last impact, to be written anew.
+    pub(crate) fn take_report(&mut self) -> ImpactReport {
+        std::mem::take(&mut self.told.last_impact)
+    }
+
+    /// Puts in the report of the last impact.
+    pub(crate) fn put_report(&mut self, report: ImpactReport) {
+        self.told.last_impact = report;
+    }
+
+    /// Notes a unilateral row that is held from now on.
+    pub(crate) fn begin_contact(&mut self, row: RowForce) {
+        self.told.changes.begin.push(row);
+    }
+
+    /// Drops rows that end only to begin at once.
+    pub(crate) fn drop_continued(&mut self) {
+        self.told.drop_continued();
+    }
+
+    /// Notes a gap [m] between bodies.
+    pub(crate) fn note_gap(&mut self, gap: f64) {
+        self.counts.note_gap(gap);
+    }
+
+    /// Notes the error [m] of a connector.
+    pub(crate) fn note_connector_error(&mut self, error: f64) {
+        self.counts.note_connector_error(error);
+    }
+
+    /// Counts a segment.
+    pub(crate) fn note_segment(&mut self) {
+        self.counts.segments += 1;
+    }
+
+    /// Counts a motion that is cut short.
+    pub(crate) fn note_backup(&mut self) {
+        self.counts.backups += 1;
+    }
+
+    /// Counts solved problems.
+    pub(crate) fn note_solves(&mut self, solves: u64) {
+        self.counts.contact_solves += solves;
+    }
+
+    /// Counts a storm that is ended.
+    pub(crate) fn note_storm(&mut self) {
+        self.counts.storms += 1;
+    }
+
+    /// Books a change of energy [J] by a projection.
+    pub(crate) fn book_projection(&mut self, change: f64) {
+        self.ledger.projections += change;
+    }
+
+    /// Books the work [J] of a force law without a potential, or of damping.
+    pub(crate) fn book_work(&mut self, work: Work, value: f64) {
+        self.ledger.book(work, value);
+    }
+
+    /// Takes back the projections of groups that are made anew: the books are at a value [J] again.
+    pub(crate) fn unbook_projections(&mut self, before: f64) {
+        self.ledger.projections = before;
+    }
+
+    /// Books a change of energy [J] by the caller.
+    pub(crate) fn book_intervention(&mut self, change: f64) {
+        self.ledger.interventions += change;
+    }
 }

@@ -14,7 +14,7 @@ pub(crate) fn book_damping(assembly: &mut Assembly, books: &mut Books, body: Bod
     if assembly.flyer(body).law().is_damped() {
         books.ledger.damping += assembly.damping_loss(body, time);
         let state = assembly.flyer(body).unwound_at(time);
-        assembly.flyers[body.index()].fly_from(time, state);
+        assembly.flyer_mut(body).fly_from(time, state);
     }
 }
 
@@ -41,5 +41,5 @@ pub(crate) fn note_kinetic_energy_before(assembly: &Assembly, books: &mut Books,
 pub(crate) fn interrupt<'a>(assembly: &'a mut Assembly, books: &mut Books, body: BodyId) -> &'a mut Flyer {
     books.counts.segments += 1;
     books.counts.backups += 1;
-    &mut assembly.flyers[body.index()]
+    assembly.flyer_mut(body)
 }

@@ -17,7 +17,7 @@ pub(crate) enum Booking {
 /// Books the change of energy of an impact in the ledger.
 pub(crate) fn book_impact(assembly: &Assembly, books: &mut Books, report: &ImpactReport, booking: Booking) {
     let fastest = fastest_row(report, true);
-    let is_capture = booking == Booking::Capture || fastest <= assembly.settings.tolerances.velocity_tol;
+    let is_capture = booking == Booking::Capture || fastest <= assembly.settings().tolerances.velocity_tol;
     let booked = if is_capture { &mut books.ledger.captures } else { &mut books.ledger.impacts };
     *booked += report.energy_change;
     note_kinetic_energy_before(assembly, books, report);

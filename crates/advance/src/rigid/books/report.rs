@@ -35,14 +35,14 @@ impl RowForce {
 /// Outcome of the last event, for callers that ask.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Told {
-    pub(crate) last_impact: ImpactReport,
+    pub(super) last_impact: ImpactReport,
     /// True if the event contained an impact.
-    pub(crate) has_hit: bool,
-    pub(crate) changes: ContactChanges,
+    pub(super) has_hit: bool,
+    pub(super) changes: ContactChanges,
     /// Error of the event, if it could not be handled.
-    pub(crate) failure: Option<AdvanceError>,
+    pub(super) failure: Option<AdvanceError>,
     /// Buffer: whether each row that begins has only gone on.
-    goes_on: Vec<bool>,
+    pub(super) goes_on: Vec<bool>,
 }
 
 /// Unilateral rows (contacts, ropes, stops) whose holding begins or ends in one event.
@@ -57,6 +57,12 @@ pub struct ContactChanges {
 }
 
 impl Told {
+    /// Begins an event at a time.
+    pub(super) fn begin(&mut self, time: Time) {
+        self.has_hit = false;
+        self.changes.clear(time);
+    }
+
     /// Drops rows that end only to begin at once.
     pub(crate) fn drop_continued(&mut self) {
         self.changes.drop_continued(&mut self.goes_on);
@@ -132,6 +138,33 @@ pub struct ImpactReport {
     pub energy_change: f64,
     /// States after the impact of the movable bodies on which an impulse acted.
     pub states: Vec<(BodyId, BodyState)>,
+}
+
+impl Told {
+    // getters of Told
+    /// The changes.
+    #[inline]
+    pub(crate) fn changes(&self) -> &ContactChanges {
+        &self.changes
+    }
+
+    /// Error of the event, if it could not be handled.
+    #[inline]
+    pub(crate) fn failure(&self) -> &Option<AdvanceError> {
+        &self.failure
+    }
+
+    /// True if the event contained an impact.
+    #[inline]
+    pub(crate) fn has_hit(&self) -> bool {
+        self.has_hit
+    }
+
+    /// The last impact.
+    #[inline]
+    pub(crate) fn last_impact(&self) -> &ImpactReport {
+        &self.last_impact
+    }
 }
 
 #[cfg(test)]

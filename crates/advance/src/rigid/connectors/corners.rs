@@ -9,11 +9,11 @@ use halfgap_collision::{BodyId, Collision, ConnectorId, ConnectorKind};
 /// Notes which points of rails are in a corner at the start. A moving point is put on the side along which it
 /// moves: if that leads through the corner, the point comes to it at once.
 pub(crate) fn note_corners(assembly: &Assembly, connectors: &mut Connectors) {
-    let (now, fast) = (assembly.now, assembly.settings.tolerances.velocity_tol);
+    let (now, fast) = (assembly.now(), assembly.settings().tolerances.velocity_tol);
     for index in 0..connectors.all.len() {
         let id = ConnectorId(u32::try_from(index).unwrap_or(u32::MAX));
         let ConnectorKind::Rail { path, .. } = &connectors.connector(id).kind else { continue };
-        let within = assembly.settings.tolerances.accuracy;
+        let within = assembly.settings().tolerances.accuracy;
         let corner = path.corner_at(connectors.point_on_rail(assembly, id, now), within);
         connectors.states[index].corner = corner;
         let [before, after] = [0, 1].map(|side| match corner {
@@ -42,7 +42,7 @@ pub(crate) fn pass_joints_beside(
                 && comes_to_joint(assembly, connectors, id)
                 && stop_in_corner(assembly, connectors, id).is_none()
             {
-                any |= connectors.pass_knot(assembly, id, assembly.now);
+                any |= connectors.pass_knot(assembly, id, assembly.now());
             }
         }
     }
@@ -56,12 +56,12 @@ fn comes_to_joint(assembly: &Assembly, connectors: &Connectors, id: ConnectorId)
     if state.corner.is_some() {
         return false;
     }
-    let moving = assembly.moving_at(a.body, assembly.now);
+    let moving = assembly.moving_at(a.body, assembly.now());
     let arm = moving.pose.vector_to_world(a.point);
     let place = path.nearest(moving.pose.position + arm, state.hint.as_ref());
     let along = moving.velocity_at(arm).dot(place.tangent());
     let ahead = end_rooms(path, &place).into_iter().flatten().find(|end| end.is_forward == (along > 0.0));
-    let RigidSettings { steps, tolerances, .. } = &assembly.settings;
+    let RigidSettings { steps, tolerances, .. } = assembly.settings();
     let error = tolerances.accuracy.min(steps.local_error * steps.length);
     along != 0.0 && ahead.is_some_and(|end| end.room <= error)
 }
@@ -73,15 +73,15 @@ pub(crate) fn stop_in_corner(
     rail: ConnectorId,
 ) -> Option<ConnectorId> {
     let hint = connectors.states[rail.index()].hint?;
-    let moving = connectors.connector(rail).bodies().map(|body| assembly.moving_at(body, assembly.now));
-    let (accuracy, rest) = (assembly.settings.tolerances.accuracy, assembly.rest_speed());
+    let moving = connectors.connector(rail).bodies().map(|body| assembly.moving_at(body, assembly.now()));
+    let (accuracy, rest) = (assembly.settings().tolerances.accuracy, assembly.rest_speed());
     let mut beside = connectors.of(connectors.connector(rail).bodies()[0]).iter().copied();
     beside.find(|&id| {
         let stop = connectors.connector(id);
         if !stop.is_stop_of(connectors.connector(rail)) || !connectors.is_at_end(id, &hint) {
             return false;
         }
-        let left = connectors.hint_at(assembly, id, 0, assembly.now).and_then(|hint| hint.before_stop());
+        let left = connectors.hint_at(assembly, id, 0, assembly.now()).and_then(|hint| hint.before_stop());
         let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint.with_before_stop(left)));
         sample.kinematics.rate <= rest && sample.gap.abs() <= accuracy
     })

@@ -114,9 +114,9 @@ impl Connectors {
         let hint = self.hint_at(assembly, id, row, time);
         let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
         let row = u32::try_from(row).unwrap_or(u32::MAX);
-        let (bodies, tolerances) = ([&moving[0], &moving[1]], &assembly.settings.tolerances);
+        let (bodies, tolerances) = ([&moving[0], &moving[1]], assembly.settings().tolerances);
         let mut record =
-            Collision::of_connector(id, row, connector, &sample, bodies, tolerances, time.seconds());
+            Collision::of_connector(id, row, connector, &sample, bodies, &tolerances, time.seconds());
         if state.corner.is_some() {
             record.parties.bilateral = false;
             record.response.elasticity = 0.0;
@@ -155,12 +155,12 @@ impl Connectors {
     /// A stop as it is watched along a segment that starts now.
     pub(crate) fn stop(&self, assembly: &Assembly, id: ConnectorId) -> Stop {
         let connector = self.connector(id);
-        let hint = self.hint_at(assembly, id, 0, assembly.now);
-        let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, assembly.now));
+        let hint = self.hint_at(assembly, id, 0, assembly.now());
+        let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, assembly.now()));
         let sample = connector.measure_near(0, &a, &b, hint.as_ref());
         // A stop of a rail that fires again without time going by lies nearer than the search can tell: it fires again
         // only when its point has sunk further, by more each time.
-        let repeats = f64::from(self.states[id.index()].repeats_at(assembly.now));
+        let repeats = f64::from(self.states[id.index()].repeats_at(assembly.now()));
         let lies_beyond = connector.is_stop() && repeats > 0.0;
         let slack = if lies_beyond { repeats * assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 };
         Stop { id, hint, slack: slack.max(slack_of(assembly, &sample)), is_noted: false }
@@ -170,7 +170,7 @@ impl Connectors {
 /// Distance [m] by which a unilateral connector may sink from where it was measured before it fires: positive only
 /// where it is touched and does not open.
 pub(crate) fn slack_of(assembly: &Assembly, sample: &ConnectorSample) -> f64 {
-    let touches = sample.gap <= assembly.settings.tolerances.accuracy;
+    let touches = sample.gap <= assembly.settings().tolerances.accuracy;
     let rests = touches && sample.kinematics.rate <= assembly.rest_speed();
     if rests { assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 }
 }

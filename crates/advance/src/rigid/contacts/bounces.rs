@@ -49,8 +49,9 @@ pub(crate) fn note_seen(
             Some((fired, is_open)) if fired == touch => is_open,
             _ => goes_on(),
         };
-        let fires_open = fires_open && gap < assembly.settings.tolerances.target_gap;
-        let fresh = Seen { features: touch.features, time: assembly.now, gap, formed, rate, low, fires_open };
+        let fires_open = fires_open && gap < assembly.settings().tolerances.target_gap;
+        let fresh =
+            Seen { features: touch.features, time: assembly.now(), gap, formed, rate, low, fires_open };
         let seen = pairs.seen_mut(pair);
         seen.retain(|old| old.features != fresh.features);
         if seen.len() == MOST_SEEN {
@@ -62,12 +63,12 @@ pub(crate) fn note_seen(
 
 /// Number of low bounces in a row of a contact that was seen before and has a gap [m] now.
 fn low_bounces(assembly: &Assembly, seen: &Seen, gap: f64) -> u32 {
-    let way = seen.rate.max(0.0) * assembly.now.since(seen.time);
+    let way = seen.rate.max(0.0) * assembly.now().since(seen.time);
     // Under a constant acceleration, the distance [m] by which the acceleration has brought it back in the
     // meantime.
     let back = way - (gap - seen.gap);
     let rise = if back > 0.0 { 0.25 * way * (way / back) } else { way };
-    let is_low = seen.gap + rise <= LOW_GAPS * assembly.settings.tolerances.target_gap;
+    let is_low = seen.gap + rise <= LOW_GAPS * assembly.settings().tolerances.target_gap;
     if is_low { seen.low.saturating_add(u32::from(seen.rate > assembly.rest_speed())) } else { 0 }
 }
 
@@ -121,7 +122,7 @@ pub(crate) fn has_stayed_low(
         return false;
     }
     let up = seen.rate.max(0.0);
-    let lasted = assembly.now.since(seen.time);
+    let lasted = assembly.now().since(seen.time);
     let rise = 0.5 * up * up * lasted / (up + down);
     let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
     // A pair that moved under a constant acceleration is back where it was (`went` is small). Else, as when
@@ -129,7 +130,7 @@ pub(crate) fn has_stayed_low(
     // zone. With contacts that carry impulses only it would then sink, so there only `went` counts.
     let went = 0.5 * (up - down).abs() * lasted;
     let forced = |times: f64| {
-        assembly.settings.impulse_step.is_none()
+        assembly.settings().impulse_step.is_none()
             && down * down <= 2.0 * times * assembly.acceleration() * most
     };
     let is_low = || {
@@ -145,7 +146,7 @@ pub(crate) fn has_stayed_low(
 /// True if an impulse has changed the velocity of a body of a pair since its contact was last seen: then the pair
 /// need not have been turned back by forces.
 fn is_struck_since(assembly: &Assembly, pairs: &Pairs, pair: PairId, seen: &Seen) -> bool {
-    let strikes = pairs.bodies(pair).into_iter().filter_map(|body| assembly.struck[body.index()]);
+    let strikes = pairs.bodies(pair).into_iter().filter_map(|body| assembly.struck()[body.index()]);
     strikes.into_iter().any(|strike| strike > seen.time)
 }
 

@@ -14,7 +14,7 @@ pub(crate) fn leaves(
     connectors: &Connectors,
     Touch { bodies, features }: Touch,
 ) -> bool {
-    let moving = bodies.map(|body| assembly.flyer(body).moving_at(assembly.now));
+    let moving = bodies.map(|body| assembly.flyer(body).moving_at(assembly.now()));
     mechanism(assembly, connectors).has_left(bodies, features, [&moving[0], &moving[1]])
 }
 

@@ -357,9 +357,9 @@ pub(crate) fn with_lean(assembly: &Assembly, connectors: &Connectors, row: HeldR
 /// Bodies, connectors and tolerances by which rows are measured.
 pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Mechanism<'a> {
     Mechanism {
-        flyers: &assembly.flyers,
+        flyers: assembly.flyers(),
         connectors: &connectors.all,
-        tolerances: &assembly.settings.tolerances,
+        tolerances: &assembly.settings().tolerances,
     }
 }
 
@@ -393,7 +393,7 @@ mod tests {
         let mechanism = mechanism(&rooms.assembly, &rooms.connectors);
         let room = |row: &HeldRow, lean: f64| {
             let mut movings =
-                [0, 1].map(|body| rooms.assembly.flyer(BodyId(body)).moving_at(rooms.assembly.now));
+                [0, 1].map(|body| rooms.assembly.flyer(BodyId(body)).moving_at(rooms.assembly.now()));
             let position = movings[1].pose.position;
             movings[1].pose = Pose::new(position, FRAC_PI_2 + lean / 0.1);
             mechanism.way_to_end(row, &movings).expect("the corner ends")

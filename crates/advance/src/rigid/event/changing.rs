@@ -31,9 +31,9 @@ const MOST_CANCELLING: f64 = 10.0;
 
 /// Handles a change of the held rows. Other contacts that close within their target zones make it an impact.
 pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
-    collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now);
+    collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
     cut_groups(rooms, &mut work.region);
-    remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now);
+    remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     if neighbour_closes(&rooms.assembly, &work.region) {
         // Cutting moves bodies a little, and a corner that was passed a moment ago may be ahead again: it takes
         // over only if it is nearest now.
@@ -89,7 +89,7 @@ fn hand_over(rooms: &mut Rooms, work: &mut EventWork) {
 /// Resolves an impact without elasticity in which some contacts are marked as bilateral, and removes the marks.
 /// Where such rows contradict each other, nothing is done: as unilateral ones they need not.
 fn stop_bilaterally(rooms: &mut Rooms, work: &mut EventWork) {
-    let now = rooms.assembly.now;
+    let now = rooms.assembly.now();
     work.before.clear();
     work.before.extend(work.region.bodies.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(now)));
     // A stop that may as well be left out is not worth a long solve.
@@ -106,7 +106,7 @@ fn stop_bilaterally(rooms: &mut Rooms, work: &mut EventWork) {
         book_impact(&rooms.assembly, &mut rooms.books, &work.stop, Booking::Capture);
     } else if outcome.is_ok() {
         for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
-            rooms.assembly.flyers[body.index()].fly_from(now, state);
+            rooms.assembly.flyer_mut(body).fly_from(now, state);
         }
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, now);
     }
@@ -121,7 +121,7 @@ fn is_modest(assembly: &Assembly, report: &ImpactReport, region: &Region, before
     let (mut fastest, mut largest) = (0.0f64, 0.0f64);
     for (&body, before) in region.bodies.iter().zip(before) {
         let flyer = assembly.flyer(body);
-        let after = flyer.unwound_at(assembly.now);
+        let after = flyer.unwound_at(assembly.now());
         let moved = after.velocity.distance(before.velocity);
         let turned = (after.angular_velocity - before.angular_velocity).abs();
         fastest = fastest.max(moved + turned * flyer.reach());

@@ -63,13 +63,13 @@ pub(crate) fn is_left_alone(
     let only_rows =
         region.records.iter().all(|other| !other.involves_body(body) || other.connector() == Some(corner.id));
     let flyer = assembly.flyer(body);
-    is_still && only_rows && assembly.laws.of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
+    is_still && only_rows && assembly.laws().of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
 }
 
 /// Stops the velocity of a point across the side along which it leaves a corner; that velocity is too slow for an
 /// impact.
 fn stop_across(rooms: &mut Rooms, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
-    let (now, rest) = (rooms.assembly.now, rooms.assembly.rest_speed());
+    let (now, rest) = (rooms.assembly.now(), rooms.assembly.rest_speed());
     let mut records = work.region.records.iter();
     let moves =
         |record: &Collision| record.connector() == Some(id) && record.motion.normal_velocity.abs() > rest;

@@ -52,7 +52,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
         .groups
         .iter()
         .for_each(|&leader| note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader));
-    let seen = rooms.assembly.now;
+    let seen = rooms.assembly.now();
     measure_touches(&rooms.assembly, region);
     let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause, seen).map(|(gap, _)| gap);
     let time = cut_exactly(rooms, region, gap);
@@ -68,7 +68,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
             );
         }
     } else {
-        rooms.assembly.now = time;
+        rooms.assembly.set_now(time);
     }
     for &leader in &region.groups {
         dissolve(rooms, leader);
@@ -78,7 +78,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
 /// Cuts the groups of a region by repeated steps, at the time at which the contact, rope or stop that fired has the
 /// gap [m] that the search saw; returns this time.
 fn cut_exactly(rooms: &mut Rooms, region: &Region, gap: Option<f64>) -> Time {
-    let mut time = rooms.assembly.now;
+    let mut time = rooms.assembly.now();
     for round in 0..=MOST_CORRECTIONS {
         for &leader in &region.groups {
             cut_group(
@@ -118,8 +118,8 @@ fn corrected(
 ) -> Option<Time> {
     let (gap, rate) = gap_of_cause(assembly, connectors, cause, time)?;
     let error = gap - wanted?;
-    let counts = error.abs() > TIME_SHARE * assembly.settings.tolerances.accuracy;
-    (counts && rate < -assembly.settings.tolerances.velocity_tol).then(|| time.plus(-error / rate))
+    let counts = error.abs() > TIME_SHARE * assembly.settings().tolerances.accuracy;
+    (counts && rate < -assembly.settings().tolerances.velocity_tol).then(|| time.plus(-error / rate))
 }
 
 /// Time of the earliest contact of a region's bodies that was predicted for before the given time, to which the
@@ -132,10 +132,10 @@ pub(crate) fn passed(
     region: &Region,
     time: Time,
 ) -> Option<Time> {
-    if time <= assembly.now {
+    if time <= assembly.now() {
         return None;
     }
-    let least = assembly.settings.tolerances.target_gap - assembly.settings.tolerances.accuracy;
+    let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
     let links = region.bodies.iter().flat_map(|&body| pairs.of_body(body));
     let contacts = links.filter_map(|link| {
         let Prediction::Contact(features) = pairs.get(link.pair).prediction else { return None };
@@ -150,14 +150,14 @@ pub(crate) fn passed(
 /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
 /// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
 fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> bool {
-    let allowed = SEEN_SHARE * view.assembly.settings.tolerances.accuracy;
+    let allowed = SEEN_SHARE * view.assembly.settings().tolerances.accuracy;
     let fired = gap_of_cause(view.assembly, view.connectors, region.cause, time).zip(gap);
     if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
         return true;
     }
     let mut seen = region.touches.iter().zip(&region.motions);
     let moves_touches = seen.any(|(&touch, &(gap, _))| {
-        time == view.assembly.now && (gap_at(view.assembly, touch, time).0 - gap).abs() > allowed
+        time == view.assembly.now() && (gap_at(view.assembly, touch, time).0 - gap).abs() > allowed
     });
     moves_touches
         || strayed(view.assembly, view.groups, region, time)
@@ -167,13 +167,13 @@ fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> boo
 /// True if a body crosses one near it that it does not touch in a region.
 fn is_in_another(assembly: &Assembly, pairs: &Pairs, body: BodyId, region: &Region, time: Time) -> bool {
     let pose = |body: BodyId| assembly.flyer(body).moving_at(time).pose;
-    let shape = |body: BodyId| &assembly.flyers[body.index()].body().shape;
+    let shape = |body: BodyId| &assembly.flyer(body).body().shape;
     pairs.of_body(body).iter().any(|&Link { pair, other }| {
         let touches = |touch: &Touch| touch.bodies == pairs.bodies(pair);
         let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
         finite
             && !region.touches.iter().any(touches)
-            && shape(body).relation(&pose(body), shape(other), &pose(other)) == Relation::Crossing
+            && shape(body).relation(&pose(body), &shape(other), &pose(other)) == Relation::Crossing
     })
 }
 
@@ -208,7 +208,7 @@ fn cut_group(
     }
     for (place, &body) in group.bodies.iter().enumerate() {
         let state = body_state(&group.end_state, group.bodies.len(), place);
-        assembly.flyers[body.index()].fly_from(time, state);
+        assembly.flyer_mut(body).fly_from(time, state);
     }
     put_group(assembly, connectors, groups, group);
 }
@@ -220,7 +220,7 @@ fn strayed<'a>(
     region: &'a Region,
     time: Time,
 ) -> impl Iterator<Item = BodyId> + 'a {
-    let allowed = assembly.settings.tolerances.accuracy;
+    let allowed = assembly.settings().tolerances.accuracy;
     let groups = region.groups.iter().filter_map(|&leader| groups.by_leader[leader.index()].as_deref());
     groups.flat_map(move |group| {
         let offset = time.since(group.start).max(0.0);

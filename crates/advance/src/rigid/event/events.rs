@@ -33,7 +33,7 @@ pub(crate) fn establish(rooms: &mut Rooms) -> Result<(), AdvanceError> {
         work.seeds.clear();
         work.seeds.extend(rooms.assembly.bodies());
         note_corners(&rooms.assembly, &mut rooms.connectors);
-        collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
         if !closes_slowly(&rooms.assembly, &work.region) {
             return go_on(rooms, work);
         }
@@ -50,7 +50,7 @@ fn closes_slowly(assembly: &Assembly, region: &Region) -> bool {
         record.motion.normal_velocity < -assembly.start_rest_of(record) && !closes_fast(record)
     };
     let mut records = region.records.iter().filter(|record| !record.parties.bilateral);
-    assembly.settings.impulse_step.is_none() && records.any(closes)
+    assembly.settings().impulse_step.is_none() && records.any(closes)
 }
 
 /// Handles the contact of two features of a pair.
@@ -106,8 +106,8 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
                 work.region.cause = Cause::Released(touch);
             }
             let source = group.rows[row].source;
-            if group.made == rooms.assembly.now {
-                rooms.zeno.last_pull = Some(rooms.assembly.now);
+            if group.made == rooms.assembly.now() {
+                rooms.zeno.note_pull(rooms.assembly.now());
             }
             if let RowSource::Connector(id, side @ (0 | 1)) = source {
                 go_along(&mut rooms.connectors, id, 1 - side);

@@ -26,12 +26,12 @@ use halfgap_geometry::GapSample;
 /// velocities.
 pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     for &body in &work.region.bodies {
-        rooms.assembly.flyers[body.index()].unwind();
+        rooms.assembly.flyer_mut(body).unwind();
     }
-    note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now);
+    note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now());
     // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
     work.region.is_hasty =
-        take_haste(&mut rooms.zeno, &work.region.bodies) || has_pulled(&rooms.zeno, rooms.assembly.now);
+        take_haste(&mut rooms.zeno, &work.region.bodies) || has_pulled(&rooms.zeno, rooms.assembly.now());
     settle_and_still(rooms, work)?;
     while leave_loose_corner(rooms, work)? {
         settle_and_still(rooms, work)?;
@@ -45,7 +45,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     note_begins(&rooms.assembly, &mut rooms.books, &work.region, &work.settling);
     outcome?;
     set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, work);
-    if rooms.zeno.last_insistent.is_some_and(|last| is_same_time(last, rooms.assembly.now)) {
+    if rooms.zeno.last_insistent().is_some_and(|last| is_same_time(last, rooms.assembly.now())) {
         lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
     }
     for &body in &work.region.bodies {
@@ -61,15 +61,15 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
 /// between bodies.
 fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
     for (&touch, &(gap, _)) in region.touches.iter().zip(&region.motions) {
-        if books.counts.smallest_gap.is_some_and(|least| least <= gap) {
+        if books.counts().smallest_gap.is_some_and(|least| least <= gap) {
             continue;
         }
         let [a, b] = features_in(assembly, touch);
-        let pose = touch.bodies.map(|body| assembly.flyer(body).moving_at(assembly.now).pose);
+        let pose = touch.bodies.map(|body| assembly.flyer(body).moving_at(assembly.now()).pose);
         let is_opposite =
             |sample: GapSample| sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= 0.0;
         if GapSample::measure(a, &pose[0], b, &pose[1]).is_some_and(is_opposite) {
-            books.counts.note_gap(gap);
+            books.note_gap(gap);
         }
     }
 }

@@ -30,7 +30,7 @@ pub(crate) fn regroup(rooms: &mut Rooms, region: &Region, settling: &Settling) -
             let group = make_group(rooms, (region, settling), &members, place);
             let leader = group.leader();
             for &body in &group.bodies {
-                rooms.assembly.leader_of[body.index()] = Some(leader);
+                rooms.assembly.lead(body, leader);
             }
             rooms.groups.made.push(leader);
             put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
@@ -65,8 +65,8 @@ fn couple(
         couple_bodies(groups, region, row.bodies.iter().copied());
     }
     for place in 0..count {
-        for index in 0..assembly.laws.of(region.bodies[place]).len() {
-            let law = assembly.laws.all[assembly.laws.of(region.bodies[place])[index]].clone();
+        for index in 0..assembly.laws().of(region.bodies[place]).len() {
+            let law = assembly.laws().all[assembly.laws().of(region.bodies[place])[index]].clone();
             couple_bodies(groups, region, law.bodies().iter().copied());
         }
     }
@@ -88,7 +88,7 @@ fn couple(
 /// a group watches such a contact from step to step, where the search would go on in steps as short as the contact
 /// takes to sink by next to nothing.
 fn couple_touching(assembly: &Assembly, groups: &mut Groups, region: &Region, settling: &Settling) {
-    if assembly.settings.impulse_step.is_some() {
+    if assembly.settings().impulse_step.is_some() {
         return;
     }
     let rest = assembly.rest_speed();
@@ -125,7 +125,7 @@ fn make_group(rooms: &mut Rooms, of: (&Region, &Settling), members: &Members, ro
     group.rows.extend(rows.filter(|row| !row.bilateral));
     list_idle(&rooms.assembly, &rooms.connectors, &mut group, of, members.touches(root));
     list_stops(&rooms.assembly, &rooms.connectors, &mut group);
-    rooms.assembly.laws.list(&group.bodies, &mut group.laws);
+    rooms.assembly.laws().list(&group.bodies, &mut group.laws);
     list_works(&rooms.assembly, &mut group);
     foresee(&rooms.assembly, &rooms.connectors, &rooms.groups, &mut group);
     group.is_unwatched = is_unwatched(&rooms.assembly, &rooms.connectors, &rooms.search, &group);
@@ -140,7 +140,7 @@ fn list_idle(
     (region, settling): (&Region, &Settling),
     touches: impl Iterator<Item = usize>,
 ) {
-    if assembly.settings.impulse_step.is_some() {
+    if assembly.settings().impulse_step.is_some() {
         // Without contact forces the rules of the search tell of contacts that sink, once a step.
         return;
     }
@@ -157,7 +157,7 @@ fn list_idle(
             let bodies = touch.bodies;
             let (hint, leans, is_lifted) = (None, false, false);
             let row = HeldRow { source, bodies, bilateral: false, gap, hint, leans, is_lifted };
-            group.idle.push(with_lean(assembly, connectors, row, assembly.now));
+            group.idle.push(with_lean(assembly, connectors, row, assembly.now()));
         }
     }
 }
@@ -175,17 +175,19 @@ pub(crate) fn is_watched(assembly: &Assembly, groups: &Groups, touch: Touch) -> 
 /// much.
 pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
     let Some(mut group) = rooms.groups.take(leader) else { return };
-    let opened = rooms.assembly.settings.tolerances.target_gap + rooms.assembly.settings.tolerances.accuracy;
+    let opened =
+        rooms.assembly.settings().tolerances.target_gap + rooms.assembly.settings().tolerances.accuracy;
     let mut touched = std::mem::take(&mut rooms.search.touched);
     touched.clear();
     group.idle.retain(|row| {
         let RowSource::Contact(features) = row.source else { return true };
         let touch = Touch { bodies: row.bodies, features };
-        let [a, b] = row.bodies.map(|body| rooms.assembly.moving_at(body, rooms.assembly.now));
+        let [a, b] = row.bodies.map(|body| rooms.assembly.moving_at(body, rooms.assembly.now()));
         let has_run_off =
             mechanism(&rooms.assembly, &rooms.connectors).overrun(row.bodies, features, [&a, &b]) > opened;
-        let gap = gap_at(&rooms.assembly, touch, rooms.assembly.now).0;
-        let stays = gap < opened && gap > -rooms.assembly.settings.tolerances.distance_tol() && !has_run_off;
+        let gap = gap_at(&rooms.assembly, touch, rooms.assembly.now()).0;
+        let stays =
+            gap < opened && gap > -rooms.assembly.settings().tolerances.distance_tol() && !has_run_off;
         if !stays && let Some(pair) = rooms.pairs.between(touch.bodies[0], touch.bodies[1]) {
             rooms.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
             // The contact has left the target zone: its return is no low bounce.
@@ -194,17 +196,17 @@ pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
         }
         stays
     });
-    let slack = rooms.assembly.settings.tolerances.accuracy;
+    let slack = rooms.assembly.settings().tolerances.accuracy;
     for stop in &group.stops {
         rooms.connectors.unwatch(stop.id);
     }
     group.stops.retain(|stop| {
         let connector = rooms.connectors.connector(stop.id);
-        let [a, b] = connector.bodies().map(|body| rooms.assembly.moving_at(body, rooms.assembly.now));
+        let [a, b] = connector.bodies().map(|body| rooms.assembly.moving_at(body, rooms.assembly.now()));
         !is_rope(connector) || connector.measure(0, &a, &b).gap <= slack
     });
     put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
-    let now = rooms.assembly.now;
+    let now = rooms.assembly.now();
     for &pair in &touched {
         rooms.searching().note_prediction(pair, (Prediction::Quiet, now));
     }
@@ -236,9 +238,9 @@ fn is_idly_taut(assembly: &Assembly, connectors: &Connectors, group: &Group, id:
     if !is_rope(connector) || !bodies.iter().all(|&body| belongs(body)) {
         return false;
     }
-    let [a, b] = bodies.map(|body| assembly.moving_at(body, assembly.now));
+    let [a, b] = bodies.map(|body| assembly.moving_at(body, assembly.now()));
     let sample = connector.measure(0, &a, &b);
-    sample.gap <= assembly.settings.tolerances.accuracy
+    sample.gap <= assembly.settings().tolerances.accuracy
         && sample.kinematics.rate.abs() <= assembly.rest_speed()
 }
 
@@ -246,7 +248,7 @@ fn is_idly_taut(assembly: &Assembly, connectors: &Connectors, group: &Group, id:
 /// damping.
 fn list_works(assembly: &Assembly, group: &mut Group) {
     group.works.clear();
-    let works = group.laws.iter().copied().filter(|&law| !assembly.laws.has_potential[law]).map(Work::Law);
+    let works = group.laws.iter().copied().filter(|&law| !assembly.laws().has_potential[law]).map(Work::Law);
     group.works.extend(works);
     if group.bodies.iter().any(|&body| assembly.flyer(body).law().is_damped()) {
         group.works.push(Work::Damping);
@@ -258,7 +260,7 @@ fn foresee(assembly: &Assembly, connectors: &Connectors, groups: &Groups, group:
     let pasts = group.bodies.iter().map(|body| groups.past_of[body.index()]);
     group.next_step = pasts.clone().filter_map(|past| past.step).min_by(f64::total_cmp);
     group.stiffness = pasts.clone().map(|past| past.stiffness).fold(Stiffness::default(), Stiffness::or);
-    if assembly.settings.method != Method::default() {
+    if assembly.settings().method != Method::default() {
         return;
     }
     group.has_kinks = group.rows.iter().any(|row| match row.source {
@@ -286,7 +288,7 @@ mod tests {
     #[test]
     fn how_deep_a_contact_has_sunk_holds_of_its_bodies_until_something_else_happens() {
         let mut rooms = resting_discs(&[0.0, 1.5]);
-        let gap = rooms.assembly.settings.tolerances.target_gap;
+        let gap = rooms.assembly.settings().tolerances.target_gap;
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.extend(tools).expect("it rests");
@@ -301,7 +303,8 @@ mod tests {
         assert_eq!(rooms.assembly.held_depth([floor, other]), 0.0);
         dissolve(&mut rooms, sunk);
         assert!((rooms.assembly.held_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
-        rooms.assembly.now = rooms.assembly.now.plus(1e-3);
+        let later = rooms.assembly.now().plus(1e-3);
+        rooms.assembly.set_now(later);
         assert_eq!(rooms.assembly.held_depth([floor, sunk]), 0.0);
     }
 }

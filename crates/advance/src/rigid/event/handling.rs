@@ -17,23 +17,21 @@ pub(crate) fn happen(
     time: Time,
     act: impl FnOnce(&mut Rooms) -> Result<(), AdvanceError>,
 ) -> Result<Option<Handled>, AdvanceError> {
-    if let Some(failure) = &rooms.books.told.failure {
+    if let Some(failure) = rooms.books.told().failure() {
         return Err(failure.clone());
     }
-    rooms.books.counts.events += 1;
-    rooms.books.told.has_hit = false;
-    rooms.assembly.now = time;
-    rooms.books.told.changes.clear(time);
+    rooms.books.begin_event(time);
+    rooms.assembly.set_now(time);
     let outcome = act(rooms);
-    rooms.books.told.changes.time = rooms.assembly.now;
-    if outcome.is_ok() && !rooms.books.told.has_hit && rooms.books.told.changes.is_empty() {
-        let Some(crawls) = rooms.zeno.crawls.take() else { return Ok(None) };
+    rooms.books.set_told_time(rooms.assembly.now());
+    if outcome.is_ok() && !rooms.books.told().has_hit() && rooms.books.told().changes().is_empty() {
+        let Some(crawls) = rooms.zeno.take_crawls() else { return Ok(None) };
         finish(rooms);
         return Err(crawls);
     }
     finish(rooms);
-    rooms.books.told.failure = outcome.as_ref().err().cloned();
-    outcome.map(|()| Some(Handled { time: rooms.assembly.now, impact: rooms.books.told.has_hit }))
+    rooms.books.note_outcome(&outcome);
+    outcome.map(|()| Some(Handled { time: rooms.assembly.now(), impact: rooms.books.told().has_hit() }))
 }
 
 /// Makes the dense output that was postponed, if there is any: then all motions can be evaluated.

@@ -21,9 +21,12 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
     loop {
         work.before.clear();
         work.before.extend(
-            work.region.bodies.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now)),
+            work.region
+                .bodies
+                .iter()
+                .map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now())),
         );
-        let projections = rooms.books.ledger.projections;
+        let projections = rooms.books.ledger().projections;
         let outcome = regroup(rooms, &work.region, &work.settling);
         let [displaces, drives] = match outcome {
             Ok(()) => harm_done(&rooms.assembly, work),
@@ -45,8 +48,8 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
             &work.region,
             &work.before,
         );
-        rooms.books.ledger.projections = projections;
-        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now);
+        rooms.books.unbook_projections(projections);
+        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
         settle_and_still(rooms, work)?;
         measure_touches(&rooms.assembly, &mut work.region);
     }
@@ -68,8 +71,8 @@ fn harm_done(assembly: &Assembly, EventWork { region, settling, .. }: &EventWork
     let mut harm = [false; 2];
     if is_moved || is_stopped {
         for (touch, &(gap_before, rate_before)) in region.touches.iter().zip(&region.motions) {
-            let (gap, rate) = gap_at(assembly, *touch, assembly.now);
-            harm[0] |= is_moved && gap < gap_before - assembly.settings.tolerances.accuracy;
+            let (gap, rate) = gap_at(assembly, *touch, assembly.now());
+            harm[0] |= is_moved && gap < gap_before - assembly.settings().tolerances.accuracy;
             harm[1] |= is_stopped && rate < rate_before.min(0.0) - opening;
         }
     }
@@ -95,23 +98,24 @@ mod tests {
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, disc);
         let EventWork { region, settling, .. } = &mut *work;
-        collect_region(&rooms.view(), region, &[disc], rooms.assembly.now);
+        collect_region(&rooms.view(), region, &[disc], rooms.assembly.now());
         measure_touches(&rooms.assembly, region);
         let mut stage = std::mem::take(&mut rooms.groups.stage);
         settling.set_likely([None].into_iter());
-        settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now, false).expect("it rests");
+        settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false).expect("it rests");
         settling.held[0].1.gap += lifted;
         region.records[0].motion.normal_velocity = opening;
-        let mut state = rooms.assembly.flyer(disc).unwound_at(rooms.assembly.now);
+        let mut state = rooms.assembly.flyer(disc).unwound_at(rooms.assembly.now());
         (state.position.y, state.velocity.y) = (state.position.y - sunk, -falling);
-        rooms.assembly.flyers[disc.index()].fly_from(rooms.assembly.now, state);
+        let now = rooms.assembly.now();
+        rooms.assembly.flyer_mut(disc).fly_from(now, state);
         harm_done(&rooms.assembly, &work)
     }
 
     #[test]
     fn a_touch_that_is_nearer_by_a_zone_or_driven_together_is_harm() {
         let rooms = resting_discs(&[0.0]);
-        let (zone, slow) = (rooms.assembly.settings.tolerances.accuracy, 0.5 * rooms.assembly.rest_speed());
+        let (zone, slow) = (rooms.assembly.settings().tolerances.accuracy, 0.5 * rooms.assembly.rest_speed());
         let lifted = 1e-3 * zone;
         assert_eq!(harm([lifted, 0.0], [2.0 * zone, 0.0]), [true, false]);
         assert_eq!(harm([lifted, 0.0], [0.5 * zone, 0.0]), [false; 2]);

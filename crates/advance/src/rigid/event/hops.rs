@@ -43,8 +43,8 @@ pub(crate) fn still_hops(
     if impact.try_inelastic().is_err() {
         return false;
     }
-    conclude_impact(assembly, books, region, impact, stop, assembly.now);
-    remeasure(assembly, connectors, region, assembly.now);
+    conclude_impact(assembly, books, region, impact, stop, assembly.now());
+    remeasure(assembly, connectors, region, assembly.now());
     book_impact(assembly, books, stop, Booking::Capture);
     settling.let_leave(|index| {
         let record = &region.records[index];

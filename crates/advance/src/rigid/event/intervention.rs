@@ -12,7 +12,7 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::parts::{FINITE, keep_to};
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::search::neighbourhood::Neighbourhood;
-use crate::rigid::zeno::memory::{Recent, Zeno};
+use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::pace::forget_paces;
 use crate::time::Time;
 use glam::DVec2;
@@ -29,10 +29,10 @@ pub(crate) fn change_velocities(
     if work.seeds.is_empty() {
         return Ok(());
     }
-    collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now);
+    collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
     work.before.clear();
     work.before
-        .extend(work.seeds.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now)));
+        .extend(work.seeds.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now())));
     cut_groups(rooms, &mut work.region);
     take_back_cut(&mut rooms.assembly, &mut rooms.books, &work.seeds, &work.before);
     for change in changes {
@@ -50,28 +50,29 @@ pub(crate) fn change_velocities(
 /// projected onto its rows, which callers that change a velocity do not expect.
 fn take_back_cut(assembly: &mut Assembly, books: &mut Books, bodies: &[BodyId], seen: &[BodyState]) {
     for (&body, &BodyState { velocity, angular_velocity, .. }) in bodies.iter().zip(seen) {
-        let cut = assembly.flyer(body).unwound_at(assembly.now);
+        let cut = assembly.flyer(body).unwound_at(assembly.now());
         if (cut.velocity, cut.angular_velocity) == (velocity, angular_velocity) {
             continue;
         }
-        book_damping(assembly, books, body, assembly.now);
+        book_damping(assembly, books, body, assembly.now());
         let change = VelocityChange {
             body,
             velocity: velocity - cut.velocity,
             angular_velocity: angular_velocity - cut.angular_velocity,
         };
-        books.ledger.projections += work_of(assembly, body, &cut, &change);
-        assembly.flyers[body.index()].fly_from(assembly.now, BodyState { velocity, angular_velocity, ..cut });
+        books.book_projection(work_of(assembly, body, &cut, &change));
+        let now = assembly.now();
+        assembly.flyer_mut(body).fly_from(now, BodyState { velocity, angular_velocity, ..cut });
     }
 }
 
 /// Changes the velocities of a body in flight.
 fn change_velocity(assembly: &mut Assembly, books: &mut Books, change: &VelocityChange) {
     let &VelocityChange { body, velocity, angular_velocity } = change;
-    book_damping(assembly, books, body, assembly.now);
-    let before = assembly.flyer(body).unwound_at(assembly.now);
-    books.ledger.interventions += work_of(assembly, body, &before, change);
-    let now = assembly.now;
+    book_damping(assembly, books, body, assembly.now());
+    let before = assembly.flyer(body).unwound_at(assembly.now());
+    books.book_intervention(work_of(assembly, body, &before, change));
+    let now = assembly.now();
     interrupt(assembly, books, body).cut(now, velocity, angular_velocity);
 }
 
@@ -87,7 +88,7 @@ fn work_of(assembly: &Assembly, body: BodyId, before: &BodyState, change: &Veloc
 /// become low.
 fn forget_past(pairs: &mut Pairs, search: &mut Neighbourhood, zeno: &mut Zeno, work: &EventWork) {
     for &body in &work.region.bodies {
-        zeno.recent[body.index()] = Recent::default();
+        zeno.forget_events(body);
         let mut links = std::mem::take(&mut search.links);
         links.clear();
         links.extend_from_slice(pairs.of_body(body));

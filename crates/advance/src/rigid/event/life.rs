@@ -35,9 +35,9 @@ pub(crate) fn dissolve(rooms: &mut Rooms, leader: BodyId) {
         note_ends(&rooms.assembly, &rooms.connectors, &rooms.groups, &mut rooms.books, &group);
     }
     for &body in &group.bodies {
-        rooms.assembly.sunk[body.index()] = (group.depth(), rooms.assembly.now);
-        rooms.groups.past_of[body.index()] = Past::of(&group, rooms.assembly.now);
-        rooms.books.counts.backups += 1;
+        rooms.assembly.note_sunk(body, group.depth());
+        rooms.groups.past_of[body.index()] = Past::of(&group, rooms.assembly.now());
+        rooms.books.note_backup();
     }
     part(&mut rooms.assembly, &mut rooms.connectors, &group);
     rooms.agenda.clear(Source::Group(leader));
@@ -47,15 +47,15 @@ pub(crate) fn dissolve(rooms: &mut Rooms, leader: BodyId) {
 
 fn book_works(books: &mut Books, group: &Group) {
     if group.rows.iter().any(|row| row.bilateral) {
-        books.counts.note_connector_error(group.largest_error);
+        books.note_connector_error(group.largest_error);
     }
     if let Some(gap) = group.least_gap {
-        books.counts.note_gap(gap);
+        books.note_gap(gap);
     }
-    books.ledger.projections += group.projected;
+    books.book_projection(group.projected);
     let first = 2 * group.velocities();
     for (&work, &value) in group.works.iter().zip(&group.end_state[first..]) {
-        books.ledger.book(work, value);
+        books.book_work(work, value);
     }
 }
 
@@ -70,11 +70,12 @@ pub(crate) fn undo_groups(
 ) {
     complete_dense(assembly, connectors, groups);
     for (&body, &state) in region.bodies.iter().zip(before) {
-        if let Some(leader) = assembly.leader_of[body.index()] {
+        if let Some(leader) = assembly.leader_of()[body.index()] {
             agenda.clear(Source::Group(leader));
             drop_group(assembly, connectors, groups, leader);
         }
-        assembly.flyers[body.index()].fly_from(assembly.now, state);
+        let now = assembly.now();
+        assembly.flyer_mut(body).fly_from(now, state);
     }
 }
 
@@ -92,8 +93,8 @@ pub(crate) fn drop_group(
 /// Starts a group's first segment from the states of its bodies.
 pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
     let Some(mut group) = rooms.groups.take(leader) else { return Ok(()) };
-    (group.start, group.made) = (rooms.assembly.now, rooms.assembly.now);
-    group.is_patient = has_pulled(&rooms.zeno, rooms.assembly.now);
+    (group.start, group.made) = (rooms.assembly.now(), rooms.assembly.now());
+    group.is_patient = has_pulled(&rooms.zeno, rooms.assembly.now());
     let count = group.bodies.len();
     let dimension = group.dimension();
     let mut inertias = std::mem::take(&mut rooms.groups.inertias);
@@ -105,10 +106,10 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
     // The projection acts on the end of a segment: a segment of no length ends here.
     group.end_state.clear();
     group.end_state.resize(dimension, 0.0);
-    let now = rooms.assembly.now;
+    let now = rooms.assembly.now();
     for place in 0..count {
         book_damping(&mut rooms.assembly, &mut rooms.books, group.bodies[place], now);
-        let state = rooms.assembly.flyer(group.bodies[place]).unwound_at(rooms.assembly.now);
+        let state = rooms.assembly.flyer(group.bodies[place]).unwound_at(rooms.assembly.now());
         set_body_state(&mut group.end_state, count, place, &state);
     }
     group.span = 0.0;
@@ -119,7 +120,7 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
         dynamics.leave_lifted();
         dynamics.lower_idle();
     });
-    rooms.books.ledger.projections += std::mem::take(&mut group.projected);
+    rooms.books.book_projection(std::mem::take(&mut group.projected));
     std::mem::swap(&mut group.state, &mut group.end_state);
     with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
         dynamics.find_tree_and_loops(tools.settings);
@@ -138,7 +139,7 @@ pub(crate) fn continue_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Ad
     book_works(&mut rooms.books, &group);
     group.start = group.end();
     group.end_brief();
-    group.choose_stiffness(rooms.assembly.settings.method);
+    group.choose_stiffness(rooms.assembly.settings().method);
     let first_work = 2 * group.velocities();
     let group_mut = &mut *group;
     std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);
@@ -161,7 +162,7 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
         });
     if outcome.is_err() && group.stiffness.is_stiff() {
         group.next_step = next_step;
-        group.leave_stiffness(rooms.assembly.settings.method);
+        group.leave_stiffness(rooms.assembly.settings().method);
         outcome = with_group(
             &rooms.assembly,
             &rooms.connectors,
@@ -170,7 +171,7 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
             |dynamics, tools| extend_watched(dynamics, tools),
         );
     }
-    rooms.books.counts.segments += 1;
+    rooms.books.note_segment();
     if let Err(failure) = outcome {
         let error = step_error(&rooms.assembly, &group, failure);
         give_up(&mut rooms.assembly, &mut rooms.connectors, &group);
@@ -206,7 +207,7 @@ pub(crate) fn look_further(
 fn give_up(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) {
     for (place, &body) in group.bodies.iter().enumerate() {
         let state = body_state(&group.state, group.bodies.len(), place);
-        assembly.flyers[body.index()].fly_from(group.start, state);
+        assembly.flyer_mut(body).fly_from(group.start, state);
     }
     part(assembly, connectors, group);
 }
@@ -215,7 +216,7 @@ fn give_up(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) 
 fn fly_along(assembly: &mut Assembly, group: &Group) {
     let span = group.end().since(group.start);
     for (&body, paths) in group.bodies.iter().zip(&group.paths) {
-        assembly.flyers[body.index()].follow(group.start, paths, span);
+        assembly.flyer_mut(body).follow(group.start, paths, span);
     }
 }
 
@@ -239,7 +240,7 @@ fn so_far_apart(assembly: &Assembly, group: &Group, length: f64) -> Option<[Body
         Ok(place) => body_state(&group.state, group.bodies.len(), place).position,
         Err(_) => assembly.moving_at(body, group.start).pose.position,
     };
-    let bodies = group.laws.iter().map(|&law| assembly.laws.all[law].bodies());
+    let bodies = group.laws.iter().map(|&law| assembly.laws().all[law].bodies());
     let mut pairs = bodies
         .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
         .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));
@@ -258,7 +259,7 @@ pub(crate) fn is_unwatched(
     group.bodies.iter().all(|body| search.loners[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
         && group.rows.iter().all(|row| row.bilateral && !mechanism.can_change(row))
-        && group.laws.iter().all(|&law| assembly.laws.all[law].switches() == 0)
+        && group.laws.iter().all(|&law| assembly.laws().all[law].switches() == 0)
 }
 
 /// Postpones the dense output of the group with this leader.

@@ -20,25 +20,25 @@ use halfgap_collision::BodyState;
 pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
     let (mut full, mut short) = (0, 0);
     while full < ROUNDS && short < SHORT_ROUNDS {
-        let now = rooms.assembly.now;
+        let now = rooms.assembly.now();
         for &body in &work.region.bodies {
             book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
         }
         let before = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
         let Some(share) = move_apart(&mut rooms.assembly, &mut rooms.sinking, work) else { break };
         *(if share == 1.0 { &mut full } else { &mut short }) += 1;
-        rooms.books.ledger.projections +=
-            potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region) - before;
+        let after = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
+        rooms.books.book_projection(after - before);
         for &body in &work.region.bodies {
-            rooms.search.lanes[body.index()].follow(&rooms.assembly.flyers[body.index()]);
+            rooms.search.lanes[body.index()].follow(rooms.assembly.flyer(body));
         }
         work.seeds.clear();
         work.seeds.extend(&work.region.bodies);
-        collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
         cut_groups(rooms, &mut work.region);
-        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now);
+        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     }
-    rooms.sinking.moved = 0.0;
+    rooms.sinking.end_moves();
     // Touching contacts may yet sink when connectors are put together again afterwards.
     for &touch in &work.region.touches {
         rooms.sinking.wait(touch);
@@ -57,12 +57,13 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
     settling.add_responses(region, rows, |body| assembly.inertia(body), shifts);
     let longest = longest_way(assembly, region, shifts);
     let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
-    sinking.moved += share * longest.0;
+    sinking.note_move(share * longest.0);
     for (&body, &[x, y, turn]) in region.bodies.iter().zip(shifts.iter()) {
-        let state = assembly.flyer(body).unwound_at(assembly.now);
+        let state = assembly.flyer(body).unwound_at(assembly.now());
         let position = state.position + share * DVec2::new(x, y);
         let moved = BodyState { position, angle: state.angle + share * turn, ..state };
-        assembly.flyers[body.index()].fly_from(assembly.now, moved);
+        let now = assembly.now();
+        assembly.flyer_mut(body).fly_from(now, moved);
     }
     Some(share)
 }
@@ -98,16 +99,16 @@ fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &
 fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking, region: &Region) -> f64 {
     let mut energy = 0.0;
     for &body in &region.bodies {
-        groups.stage.movings[body.index()] = assembly.flyer(body).moving_at(assembly.now);
+        groups.stage.movings[body.index()] = assembly.flyer(body).moving_at(assembly.now());
         let flyer = assembly.flyer(body);
         let position = groups.stage.movings[body.index()].pose.position;
         energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
     }
-    let mut laws = std::mem::take(&mut sinking.laws);
-    assembly.laws.list(&region.bodies, &mut laws);
-    let now = Snapshot::of_unwound(assembly.now.seconds(), &groups.stage.movings, &assembly.flyers);
-    let of_laws = laws.iter().filter_map(|&law| assembly.laws.all[law].potential(&now)).sum::<f64>();
-    sinking.laws = laws;
+    let mut laws = sinking.take_laws();
+    assembly.laws().list(&region.bodies, &mut laws);
+    let now = Snapshot::of_unwound(assembly.now().seconds(), &groups.stage.movings, assembly.flyers());
+    let of_laws = laws.iter().filter_map(|&law| assembly.laws().all[law].potential(&now)).sum::<f64>();
+    sinking.put_laws(laws);
     energy + of_laws
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn note_ways(
     for place in 0.. {
         let group = groups.by_leader[leader.index()].as_deref();
         let Some(id) = group.and_then(|group| group.stops.get(place)).map(|stop| stop.id) else { break };
-        connectors.note_left(assembly, id, assembly.now);
+        connectors.note_left(assembly, id, assembly.now());
         if let Some(group) = groups.by_leader[leader.index()].as_deref_mut() {
             group.stops[place].is_noted = true;
             connectors.states[id.index()].follow = None;

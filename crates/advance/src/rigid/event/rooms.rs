@@ -6,9 +6,6 @@ use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::Snapshot;
 use crate::rigid::bodies::laws::Laws;
 use crate::rigid::books::all::Books;
-use crate::rigid::books::counts::Counts;
-use crate::rigid::books::ledger::Ledger;
-use crate::rigid::books::report::Told;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::event::members::Members;
@@ -52,11 +49,7 @@ impl Rooms {
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = flyers.len();
         let movable = flyers.iter().filter(|flyer| !flyer.body().is_fixed()).count();
-        let books = Books {
-            counts: Counts { segments: movable as u64, ..Counts::default() },
-            ledger: Ledger { laws: vec![0.0; laws.len()], ..Ledger::default() },
-            told: Told::default(),
-        };
+        let books = Books::new(movable, laws.len());
         let laws = Laws::new(laws, count, &snapshot);
         let connectors = Connectors::new(connectors, count);
         Self {

@@ -29,8 +29,8 @@ fn returns_to(assembly: &Assembly, touch: Touch) -> f64 {
     let [a, b] = [0, 1]
         .map(|side: usize| assembly.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
     // In a hollow that is barely larger, a contact never opens as far as others have to.
-    let target = pair_tolerances(a, b, &assembly.settings.tolerances).target_gap;
-    let (gap, _) = gap_at(assembly, touch, assembly.now);
+    let target = pair_tolerances(a, b, &assembly.settings().tolerances).target_gap;
+    let (gap, _) = gap_at(assembly, touch, assembly.now());
     if gap < -DEEPEST * target { gap } else { target }
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn set_rules(
 ) {
     let rest = assembly.rest_speed();
     take_rules(assembly, pairs, search, region);
-    let least = assembly.settings.tolerances.target_gap - assembly.settings.tolerances.accuracy;
+    let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
     set_halos(assembly, search, region);
     for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
@@ -96,7 +96,7 @@ fn give_back_deep(assembly: &Assembly, pairs: &mut Pairs, search: &Neighbourhood
     for index in 0..search.deep.len() {
         let (pair, features, told) = search.deep[index];
         let touch = Touch { bodies: pairs.bodies(pair), features };
-        let (gap, rate) = gap_at(assembly, touch, assembly.now);
+        let (gap, rate) = gap_at(assembly, touch, assembly.now());
         // A contact that lies deeper by far has gone round its body.
         if gap < deepest && gap > MUCH_DEEPER * told {
             let target = if rate.abs() <= assembly.rest_speed() { assembly.refire_gap(gap) } else { gap };
@@ -109,8 +109,8 @@ fn give_back_deep(assembly: &Assembly, pairs: &mut Pairs, search: &Neighbourhood
 /// Gap [m] below which the search would take a contact for the far side of a body. Where contacts carry impulses
 /// only, it looks as deep as they may sink.
 pub(crate) fn deepest(assembly: &Assembly) -> f64 {
-    let with_forces = assembly.settings.impulse_step.is_none();
-    if with_forces { -DEEPEST * assembly.settings.tolerances.target_gap } else { f64::NEG_INFINITY }
+    let with_forces = assembly.settings().impulse_step.is_none();
+    if with_forces { -DEEPEST * assembly.settings().tolerances.target_gap } else { f64::NEG_INFINITY }
 }
 
 /// Makes the search skip the corners at the ends of the edges of a held contact against the other of its features:
@@ -118,7 +118,7 @@ pub(crate) fn deepest(assembly: &Assembly) -> f64 {
 /// the edges on both sides of corners that are held tip on tip.
 fn leave_ends_alone(assembly: &Assembly, pairs: &mut Pairs, pair: PairId, touch: &Touch) {
     let [a, b] = touch.features;
-    let shapes = touch.bodies.map(|body| &assembly.flyers[body.index()].body().shape);
+    let shapes = touch.bodies.map(|body| &assembly.flyer(body).body().shape);
     let [next_to_a, next_to_b] = match (shapes[0].sides_of(a), shapes[1].sides_of(b)) {
         (Some(of_a), Some(of_b)) => [of_a.map(Some), of_b.map(Some)],
         _ => [shapes[0].ends_of(a), shapes[1].ends_of(b)],
@@ -165,7 +165,7 @@ pub(crate) fn lower_insistent(
 
 /// True if a rule for two discs says only what holds without it.
 fn is_idle(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, rule: &FeatureRule) -> bool {
-    let target = assembly.settings.tolerances.target_gap;
+    let target = assembly.settings().tolerances.target_gap;
     let mut lanes = touch.bodies.iter().map(|body| &search.lanes[body.index()]);
     rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
 }
@@ -175,12 +175,12 @@ fn is_idle(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, rule: &Fe
 ///
 /// So a body that slides along at less than its target does not run against the seam of the next floor.
 fn set_halos(assembly: &Assembly, search: &mut Neighbourhood, region: &Region) {
-    let target = assembly.settings.tolerances.target_gap;
+    let target = assembly.settings().tolerances.target_gap;
     for &body in &region.bodies {
         search.lanes[body.index()].halo = target;
     }
-    let seam = SEAM_SHARE * assembly.settings.tolerances.accuracy;
-    let least = target - assembly.settings.tolerances.accuracy;
+    let seam = SEAM_SHARE * assembly.settings().tolerances.accuracy;
+    let least = target - assembly.settings().tolerances.accuracy;
     for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
         if rate > assembly.rest_speed() {
             continue;
@@ -208,15 +208,16 @@ mod tests {
     #[test]
     fn a_contact_that_opens_from_where_the_search_does_not_look_fires_where_it_lies() {
         let mut rooms = resting_discs(&[0.0]);
-        let target = rooms.assembly.settings.tolerances.target_gap;
+        let target = rooms.assembly.settings().tolerances.target_gap;
         let mut work = EventWork::default();
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
         let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
         dissolve(&mut rooms, BodyId(1));
         for (depth, expected) in [(-1.0, target), (0.4, target), (0.9, -0.9 * target)] {
-            let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now);
+            let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now());
             state.position.y = 0.5 - depth * target;
-            rooms.assembly.flyers[1].fly_from(rooms.assembly.now, state);
+            let now = rooms.assembly.now();
+            rooms.assembly.flyer_mut(BodyId(1)).fly_from(now, state);
             assert!(
                 (returns_to(&rooms.assembly, touch) - expected).abs() < 1e-9 * target,
                 "{depth} target gaps"
@@ -227,9 +228,9 @@ mod tests {
     #[test]
     fn a_contact_that_fires_where_it_lies_goes_on_to_do_so_when_others_collide() {
         let mut rooms = resting_discs(&[0.0]);
-        let target = rooms.assembly.settings.tolerances.target_gap;
+        let target = rooms.assembly.settings().tolerances.target_gap;
         let mut work = EventWork::default();
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
         let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
         let pair = rooms.pairs.between(BodyId(0), BodyId(1)).expect("they touch");
         dissolve(&mut rooms, BodyId(1));
@@ -237,9 +238,10 @@ mod tests {
         work.region.touches.clear();
         let told = [target, -0.9 * target].map(|target| touch.lowered_to(target));
         for (rule, gap, is_kept) in [(0, -0.9, false), (1, -0.8, true), (1, -0.1, false), (1, -2.0, false)] {
-            let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now);
+            let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now());
             (state.position.y, state.velocity.y) = (0.5 + gap * target, 1e-3);
-            rooms.assembly.flyers[1].fly_from(rooms.assembly.now, state);
+            let now = rooms.assembly.now();
+            rooms.assembly.flyer_mut(BodyId(1)).fly_from(now, state);
             rooms.pairs.clear_rules_of(BodyId(1));
             rooms.pairs.change_rules(pair, |rules| rules.push(told[rule]));
             set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, &work);
@@ -261,8 +263,8 @@ mod tests {
             note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair).expect("not stuck yet");
         }
         let mut work = EventWork::default();
-        collect_region(&rooms.view(), &mut work.region, &[disc], rooms.assembly.now);
-        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[disc], rooms.assembly.now());
+        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
         measure_touches(&rooms.assembly, &mut work.region);
         lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
         assert!(rooms.search.lanes[disc.index()].halo < before);

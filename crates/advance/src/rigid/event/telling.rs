@@ -15,9 +15,9 @@ pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Regio
             bouncing: bouncing(assembly, books, region, settling),
             ..told_of(&region.records[*index], row)
         };
-        books.told.changes.begin.push(told);
+        books.begin_contact(told);
     }
-    books.told.drop_continued();
+    books.drop_continued();
 }
 
 /// Duration [s] of the bounces that a single contact which was just captured would have gone on to make.
@@ -27,8 +27,12 @@ fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Sett
     let ([record], Some(acceleration)) = (region.records.as_slice(), settling.closing_acceleration()) else {
         return None;
     };
-    let impact =
-        books.told.last_impact.rows.first().filter(|_| books.told.last_impact.time == assembly.now)?;
+    let impact = books
+        .told()
+        .last_impact()
+        .rows
+        .first()
+        .filter(|_| books.told().last_impact().time == assembly.now())?;
     let elasticity = record.response.elasticity;
     let closing = (-impact.rate_before).max(0.0);
     (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))

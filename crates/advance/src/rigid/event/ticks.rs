@@ -31,21 +31,21 @@ const MOST_PRESSED: u32 = 100_000;
 
 /// Leaves a pair that fires to sink until the next tick; false if it has to be handled now.
 pub(crate) fn sinks(rooms: &mut Rooms, pair: PairId, features: [FeatureId; 2]) -> bool {
-    let Some(step) = rooms.assembly.settings.impulse_step else { return false };
+    let Some(step) = rooms.assembly.settings().impulse_step else { return false };
     let bodies = rooms.pairs.bodies(pair);
     let touch = Touch::new(bodies, features);
-    let (gap, rate) = gap_at(&rooms.assembly, touch, rooms.assembly.now);
+    let (gap, rate) = gap_at(&rooms.assembly, touch, rooms.assembly.now());
     if gap == f64::INFINITY {
         return false;
     }
-    let tolerances = &rooms.assembly.settings.tolerances;
+    let tolerances = rooms.assembly.settings().tolerances;
     let room = room_to_sink(&rooms.assembly, bodies);
     let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
     let is_fast = -rate > tolerances.velocity_tol;
     let is_deepest = gap < tolerances.target_gap - DEEPEST_SHARE * room;
     if is_deepest
         || is_fast
-            && (is_deep || !has_stayed_low(&rooms.assembly, &rooms.pairs, pair, features, -rate, tolerances))
+            && (is_deep || !has_stayed_low(&rooms.assembly, &rooms.pairs, pair, features, -rate, &tolerances))
     {
         return false;
     }
@@ -71,39 +71,39 @@ pub(crate) fn note_pressed(
     sinking: &mut Sinking,
     touch: Touch,
 ) -> Result<(), AdvanceError> {
-    let Some(step) = assembly.settings.impulse_step else { return Ok(()) };
-    let sunk = assembly.settings.tolerances.target_gap - DEEP_SHARE * room_to_sink(assembly, touch.bodies);
-    if gap_at(assembly, touch, assembly.now).0 >= sunk {
+    let Some(step) = assembly.settings().impulse_step else { return Ok(()) };
+    let sunk = assembly.settings().tolerances.target_gap - DEEP_SHARE * room_to_sink(assembly, touch.bodies);
+    if gap_at(assembly, touch, assembly.now()).0 >= sunk {
         return Ok(());
     }
-    sinking.pressed += 1;
-    if sinking.pressed <= MOST_PRESSED {
+    let events = sinking.note_pressed();
+    if events <= MOST_PRESSED {
         return Ok(());
     }
     let [primary, normal] = touch.bodies;
-    let (time, events) = (assembly.now.seconds(), sinking.pressed);
+    let time = assembly.now().seconds();
     Err(AdvanceError::Pressed { time, between: Between { primary, normal }, events, step })
 }
 
 /// Time of the first tick after the present time.
 fn next_tick(assembly: &Assembly, sinking: &mut Sinking, step: f64) -> Time {
-    let passed = (assembly.now.since(assembly.start) / step).floor();
-    sinking.count = passed.max(sinking.count);
-    let tick = assembly.start.plus((sinking.count + 1.0) * step);
-    if tick > assembly.now { tick } else { assembly.start.plus((sinking.count + 2.0) * step) }
+    let passed = (assembly.now().since(assembly.start()) / step).floor();
+    let passed = sinking.passed(passed);
+    let tick = assembly.start().plus((passed + 1.0) * step);
+    if tick > assembly.now() { tick } else { assembly.start().plus((passed + 2.0) * step) }
 }
 
 /// Stops and puts back bodies that have sunk.
 pub(crate) fn handle_tick(rooms: &mut Rooms) -> Result<(), AdvanceError> {
     rooms.agenda.clear(Source::Tick);
-    rooms.sinking.pressed = 0;
-    for index in 0..rooms.sinking.waiting.len() {
-        let (gap, _) = gap_at(&rooms.assembly, rooms.sinking.waiting[index], rooms.assembly.now);
-        rooms.books.counts.note_gap(gap);
+    rooms.sinking.begin_tick();
+    for index in 0..rooms.sinking.waiting().len() {
+        let (gap, _) = gap_at(&rooms.assembly, rooms.sinking.waiting()[index], rooms.assembly.now());
+        rooms.books.note_gap(gap);
     }
     let outcome = with_work(rooms, Cause::Tick, |rooms, work| {
         work.seeds.clear();
-        work.seeds.extend(rooms.sinking.waiting.iter().flat_map(|touch| touch.bodies));
+        work.seeds.extend(rooms.sinking.waiting().iter().flat_map(|touch| touch.bodies));
         work.seeds.sort_unstable();
         work.seeds.dedup();
         handle_impact(rooms, work)
@@ -114,14 +114,14 @@ pub(crate) fn handle_tick(rooms: &mut Rooms) -> Result<(), AdvanceError> {
 
 /// Keeps waiting the touches that could not be put back altogether, and sets the next tick for them.
 fn keep_what_is_sunk(assembly: &Assembly, sinking: &mut Sinking, agenda: &mut Agenda) {
-    let mut waiting = std::mem::take(&mut sinking.waiting);
-    let Tolerances { target_gap, accuracy, .. } = assembly.settings.tolerances;
+    let mut waiting = sinking.take_waiting();
+    let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
     waiting.retain(|touch| {
-        let gap = gap_at(assembly, *touch, assembly.now).0;
+        let gap = gap_at(assembly, *touch, assembly.now()).0;
         gap < target_gap - accuracy && gap >= -BEHIND * room_to_sink(assembly, touch.bodies)
     });
-    sinking.waiting = waiting;
-    if let Some(step) = assembly.settings.impulse_step.filter(|_| !sinking.waiting.is_empty()) {
+    sinking.put_waiting(waiting);
+    if let Some(step) = assembly.settings().impulse_step.filter(|_| !sinking.waiting().is_empty()) {
         let tick = next_tick(assembly, sinking, step);
         agenda.set(Source::Tick, tick);
     }
@@ -138,12 +138,12 @@ mod tests {
     #[test]
     fn a_contact_stopped_deep_sinks_a_part_of_the_depth_left() {
         let mut rooms = resting_discs(&[0.0]);
-        let Tolerances { target_gap, .. } = rooms.assembly.settings.tolerances;
+        let Tolerances { target_gap, .. } = rooms.assembly.settings().tolerances;
         let bodies = [BodyId(0), BodyId(1)];
         let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
         // With contact forces the contact sinks by no more than can be told.
         assert_eq!(sinks_to(&rooms.assembly, touch, -1e-3), -1e-3 - rooms.assembly.sink());
-        rooms.assembly.settings.impulse_step = Some(1e-3);
+        rooms.assembly.settings_mut().impulse_step = Some(1e-3);
         let room = room_to_sink(&rooms.assembly, bodies);
         let sinks_by = |depth: f64| {
             let gap = target_gap - depth * room;
@@ -164,21 +164,22 @@ mod tests {
         let bodies = [BodyId(0), BodyId(1)];
         let touch = Touch { bodies, features: [FeatureId(5), FeatureId(0)] };
         let step = 1e-3;
-        rooms.assembly.settings.impulse_step = Some(step);
+        rooms.assembly.settings_mut().impulse_step = Some(step);
         let notes = |rooms: &mut Rooms, times: u32| {
             (0..times).find_map(|_| note_pressed(&rooms.assembly, &mut rooms.sinking, touch).err())
         };
         assert_eq!(notes(&mut rooms, 2 * MOST_PRESSED), None, "nothing has sunk");
         dissolve(&mut rooms, bodies[1]);
-        let mut state = rooms.assembly.flyer(bodies[1]).state_at(rooms.assembly.now);
+        let mut state = rooms.assembly.flyer(bodies[1]).state_at(rooms.assembly.now());
         state.position.y -= 0.5 * room_to_sink(&rooms.assembly, bodies);
-        rooms.assembly.flyers[1].fly_from(rooms.assembly.now, state);
+        let now = rooms.assembly.now();
+        rooms.assembly.flyer_mut(BodyId(1)).fly_from(now, state);
         assert_eq!(notes(&mut rooms, MOST_PRESSED), None);
         let between = Between { primary: bodies[0], normal: bodies[1] };
-        let (time, events) = (rooms.assembly.now.seconds(), MOST_PRESSED + 1);
+        let (time, events) = (rooms.assembly.now().seconds(), MOST_PRESSED + 1);
         let expected = AdvanceError::Pressed { time, between, events, step };
         assert_eq!(notes(&mut rooms, 1), Some(expected));
         handle_tick(&mut rooms).expect("it can be put back");
-        assert_eq!(rooms.sinking.pressed, 0);
+        assert_eq!(rooms.sinking.pressed(), 0);
     }
 }

@@ -68,7 +68,7 @@ impl Groups {
 
 /// The group of a body, if it is in one.
 pub(crate) fn group_of<'a>(assembly: &Assembly, groups: &'a Groups, body: BodyId) -> Option<&'a Group> {
-    let leader = assembly.leader_of[body.index()]?;
+    let leader = assembly.leader_of()[body.index()]?;
     groups.by_leader[leader.index()].as_deref()
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn with_group<T>(
     act: impl FnOnce(&mut Dynamics<'_>, &mut Tools<'_>) -> T,
 ) -> T {
     let Groups { stage, steppers, error_scales: scales, .. } = groups;
-    let settings = &assembly.settings;
+    let settings = assembly.settings();
     let physics = physics(assembly, connectors);
     let (start, stepper) = (group.start, steppers.of(group.stepping()));
     act(&mut Dynamics { physics, group, stage, start }, &mut Tools { stepper, scales, settings })
@@ -95,8 +95,8 @@ pub(crate) fn put_group(
     group: Box<Group>,
 ) {
     let leader = group.leader();
-    assembly.shared[leader.index()] =
-        Shared { end: group.end(), depth: group.depth(), largest_error: group.largest_error };
+    let shared = Shared { end: group.end(), depth: group.depth(), largest_error: group.largest_error };
+    assembly.share(leader, shared);
     for stop in &group.stops {
         let state = &mut connectors.states[stop.id.index()];
         state.is_watched = true;
@@ -108,7 +108,7 @@ pub(crate) fn put_group(
 /// Tells the bodies and the connectors of a group that it is no more.
 pub(crate) fn part(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) {
     for &body in &group.bodies {
-        assembly.leader_of[body.index()] = None;
+        assembly.part(body);
     }
     for stop in &group.stops {
         connectors.unwatch(stop.id);

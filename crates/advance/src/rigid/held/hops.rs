@@ -53,7 +53,7 @@ pub(crate) fn turning(assembly: &Assembly, record: &Collision) -> f64 {
         let flyer = assembly.flyer(body);
         let sliding =
             if flyer.body().is_fixed() { 0.0 } else { record.motion.lateral_velocity / flyer.reach() };
-        sliding.abs() + flyer.moving_at(assembly.now).angular_velocity.abs()
+        sliding.abs() + flyer.moving_at(assembly.now()).angular_velocity.abs()
     };
     let parties = &record.parties;
     record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)
@@ -104,7 +104,7 @@ mod tests {
         let mut rooms = resting_discs(&[0.0]);
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(1));
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
         let [record] = &mut work.region.records[..] else { panic!("one disc, one contact") };
         // The disc lands after 1 ms.
         record.motion.normal_velocity = 5e-4 * GRAVITY;

@@ -38,7 +38,7 @@ pub(crate) fn drop_leaving(
 /// Leaves out the records of a region that run off their features while they slide by `accuracy`.
 pub(crate) fn retain_staying(assembly: &Assembly, connectors: &Connectors, region: &mut Region) {
     region.records.retain(|record| {
-        !leaves_at_once(assembly, connectors, record, |body| assembly.moving_at(body, assembly.now))
+        !leaves_at_once(assembly, connectors, record, |body| assembly.moving_at(body, assembly.now()))
     });
 }
 
@@ -50,8 +50,8 @@ fn leaves_at_once(
 ) -> bool {
     let Some(RowSource::Contact(features)) = source_of(record) else { return false };
     let bodies = record.bodies();
-    let wait = assembly.settings.tolerances.accuracy / record.motion.lateral_velocity.abs();
-    if wait.is_nan() || wait > SOON * assembly.settings.resolution_time {
+    let wait = assembly.settings().tolerances.accuracy / record.motion.lateral_velocity.abs();
+    if wait.is_nan() || wait > SOON * assembly.settings().resolution_time {
         return false;
     }
     let moved = bodies.map(|body| after(&moving(body), wait));

@@ -168,7 +168,7 @@ fn solve_candidates(
         let frame = region.bodies.first().filter(|_| drifts).map_or(DVec2::ZERO, |&body| velocity(body));
         let speeds = region.bodies.iter().map(|&body| (velocity(body) - frame).length());
         let fastest = speeds.fold(rest, f64::max);
-        if scale > 2.0 * rest * fastest / assembly.settings.steps.length {
+        if scale > 2.0 * rest * fastest / assembly.settings().steps.length {
             return Err(settle_error(assembly, region, settling, time, source));
         }
         settling.solution.force.clear();
@@ -232,7 +232,7 @@ pub(crate) fn accelerations_of(
 
 /// True if a unilateral row may carry a force: connectors always do.
 pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
-    assembly.settings.impulse_step.is_none() || record.parties.primary.site.is_none()
+    assembly.settings().impulse_step.is_none() || record.parties.primary.site.is_none()
 }
 
 /// Leaves out contacts beyond their target gap, which need not be in contact: a body that fits between two others
@@ -278,7 +278,7 @@ fn accelerate_region(
     for &body in &region.bodies {
         stage.movings[body.index()] = assembly.flyer(body).moving_at(time);
     }
-    assembly.laws.list(&region.bodies, &mut settling.laws);
+    assembly.laws().list(&region.bodies, &mut settling.laws);
     let physics = physics(assembly, connectors);
     let of_region = (region.bodies.as_slice(), settling.laws.as_slice());
     stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
@@ -286,7 +286,7 @@ fn accelerate_region(
 
 fn pose_problem(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
     let problem = &mut settling.problem;
-    let least = f64::EPSILON * assembly.settings.tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
+    let least = f64::EPSILON * assembly.settings().tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
     region.begin(problem, |body| assembly.inertia(body));
     for &index in &settling.candidates {
         let record = &region.records[index];
@@ -500,18 +500,18 @@ mod tests {
         let mut rooms = rooms_of(parts, FINE, Time::ZERO);
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(2));
-        let position = rooms.assembly.flyer(BodyId(3)).state_at(rooms.assembly.now).position;
+        let position = rooms.assembly.flyer(BodyId(3)).state_at(rooms.assembly.now()).position;
         let leaving = BodyState { position, velocity: DVec2::new(0.0, -1e-8), ..BodyState::default() };
         interrupt(&mut rooms.assembly, &mut rooms.books, BodyId(3)).fly_from(Time::ZERO, leaving);
         let EventWork { region, settling, .. } = &mut *work;
         region.cause = Cause::Start;
-        collect_region(&rooms.view(), region, &[BodyId(2), BodyId(3)], rooms.assembly.now);
+        collect_region(&rooms.view(), region, &[BodyId(2), BodyId(3)], rooms.assembly.now());
         region.cause = Cause::Other;
         let touch = |record: &&Collision| record.involves_body(BodyId(3));
         let touch = region.records.iter().find(touch).and_then(Touch::of).expect("they touch");
         settling.set_likely(region.records.iter().map(|_| None));
         let mut stage = std::mem::take(&mut rooms.groups.stage);
-        settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now, true).expect("it rests");
+        settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), true).expect("it rests");
         assert!(settling.held.len() >= 2, "the posts hold the beam");
         settling.holds_touch(touch)
     }
@@ -547,13 +547,14 @@ mod tests {
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(1));
         let EventWork { region, settling, .. } = &mut *work;
-        collect_region(&rooms.view(), region, &[BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), region, &[BodyId(1)], rooms.assembly.now());
         let mut stage = std::mem::take(&mut rooms.groups.stage);
         for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
             region.is_hasty = is_hasty;
             region.records[0].motion.normal_velocity = share * rooms.assembly.rest_speed();
             settling.set_likely([None].into_iter());
-            settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now, false).expect("it rests");
+            settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false)
+                .expect("it rests");
             assert_eq!(settling.held.len(), rows, "{share} of what counts as rest, hasty: {is_hasty}");
         }
     }

@@ -248,9 +248,9 @@ mod tests {
         let mut rooms = resting_discs(&[0.0, 1.5]);
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(1));
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(2), BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(2), BodyId(1)], rooms.assembly.now());
         work.settling.set_likely([None, None].into_iter());
-        work.settling.expect_forces(&work.region, &rooms.books.told.changes.end);
+        work.settling.expect_forces(&work.region, &rooms.books.told().changes().end);
         let [None, Some(force)] = work.settling.forces[..] else { panic!("{:?}", work.settling.forces) };
         assert!((force - 9.81).abs() < 1e-9, "{force} N");
     }
@@ -259,7 +259,7 @@ mod tests {
     fn the_solver_begins_with_what_is_held() {
         let mut rooms = resting_discs(&[0.0, 1.5]);
         let mut work = rooms.work.take().expect("the start has made it");
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
         let [record] = work.region.records[..] else { panic!("one disc, one contact") };
         assert_eq!(is_likely(&rooms.pairs, &record), Some(true));
         // Another contact, of which nothing is known, carries a force, too.

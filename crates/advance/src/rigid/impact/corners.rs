@@ -31,7 +31,7 @@ pub(crate) fn hold_back(
     region: &mut Region,
     rates: &[f64],
 ) -> bool {
-    let (rest, fast) = (assembly.rest_speed(), assembly.settings.tolerances.velocity_tol);
+    let (rest, fast) = (assembly.rest_speed(), assembly.settings().tolerances.velocity_tol);
     let opening = |corner: Corner| corner.records.map(|record| rates[record]);
     let is_driven_out = |corner: &Corner| {
         let [before, after] = opening(*corner);
@@ -70,9 +70,10 @@ pub(crate) fn take_side(
     side: usize,
 ) {
     go_along(connectors, corner.id, side);
-    let moving = connectors.connector(corner.id).bodies().map(|body| assembly.moving_at(body, assembly.now));
+    let moving =
+        connectors.connector(corner.id).bodies().map(|body| assembly.moving_at(body, assembly.now()));
     region.records[corner.records[0]] =
-        connectors.connector_record(assembly, corner.id, 0, &moving, assembly.now);
+        connectors.connector_record(assembly, corner.id, 0, &moving, assembly.now());
     region.records.remove(corner.records[1]);
 }
 

@@ -39,7 +39,7 @@ pub(crate) fn find_impulses(
     set_rows(view.assembly, view.connectors, view.pairs, region, impact);
     match manner {
         Manner::Lawful(number) => {
-            view.assembly.settings.law.resolve(impact, view.assembly.settings.order, number)
+            view.assembly.settings().law.resolve(impact, view.assembly.settings().order, number)
         }
         Manner::Inelastic => impact.resolve_inelastic(),
         Manner::Trial => impact.try_inelastic(),
@@ -62,7 +62,7 @@ pub(crate) fn set_rows(
     region: &Region,
     impact: &mut Impact,
 ) {
-    let dull = assembly.settings.impulse_step.is_none() && bounces_low(assembly, pairs, &region.records);
+    let dull = assembly.settings().impulse_step.is_none() && bounces_low(assembly, pairs, &region.records);
     let rows = region.records.iter().map(|record| {
         let row = row_of(assembly, record);
         let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
@@ -81,7 +81,7 @@ pub(crate) fn conclude_impact(
     report: &mut ImpactReport,
     time: Time,
 ) {
-    books.counts.contact_solves += impact.solves();
+    books.note_solves(impact.solves());
     apply_impulses(assembly, books, region, impact, time);
     write_report(assembly, region, impact, report, time);
 }
@@ -98,14 +98,14 @@ fn apply_impulses(
         book_damping(assembly, books, body, time);
         interrupt(assembly, books, body).cut(time, DVec2::new(x, y), spin);
         if [x, y, spin] != [0.0; 3] {
-            assembly.struck[body.index()] = Some(time);
+            assembly.note_struck(body, time);
         }
     }
     for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
         record.response.impulse = Some(impulse);
         // Beyond the end of a feature its gap is no distance between bodies.
         if record.parties.primary.site.is_some() && record.geometry.outside <= 0.0 {
-            books.counts.note_gap(record.geometry.distance);
+            books.note_gap(record.geometry.distance);
         }
     }
 }

@@ -156,14 +156,14 @@ mod tests {
         for (body, velocity) in
             [(BodyId(2), DVec2::new(0.0, -1.0)), (BodyId(3), DVec2::new(-disc_speed, 0.0))]
         {
-            let state = rooms.assembly.flyer(body).state_at(rooms.assembly.now);
+            let state = rooms.assembly.flyer(body).state_at(rooms.assembly.now());
             let state = BodyState { velocity, angular_velocity: 0.0, ..state };
             interrupt(&mut rooms.assembly, &mut rooms.books, body).fly_from(Time::ZERO, state);
         }
         work.region.cause = Cause::Start;
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(2), BodyId(3)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(2), BodyId(3)], rooms.assembly.now());
         let (mut report, manner) = (ImpactReport::default(), Manner::Inelastic);
-        let now = rooms.assembly.now;
+        let now = rooms.assembly.now();
         resolve_impact(&mut rooms, &mut work.region, &mut work.impact, &mut report, now, manner)
             .expect("it can be resolved");
         rooms.assembly.flyer(BodyId(2)).state_at(now).velocity

@@ -33,7 +33,7 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
         for row in 0..view.connectors.row_count(id) {
             let record = view.connectors.connector_record(view.assembly, id, row, &moving, time);
             let is_held = connector.is_bilateral() || view.connectors.is_held_unilaterally(id);
-            if !is_held && record.geometry.distance > view.assembly.settings.tolerances.accuracy {
+            if !is_held && record.geometry.distance > view.assembly.settings().tolerances.accuracy {
                 continue;
             }
             // A row at rest is held, or may be; a held rope does not graze, though dense output may have it
@@ -83,7 +83,7 @@ fn collect_touches(view: &View<'_>, region: &mut Region, place: usize, time: Tim
             continue;
         }
         let lanes = [&view.search.lanes[body.index()], &view.search.lanes[other.index()]];
-        let reach = lanes[0].reach + lanes[1].reach + view.assembly.settings.tolerances.distance_tol();
+        let reach = lanes[0].reach + lanes[1].reach + view.assembly.settings().tolerances.distance_tol();
         let offset = moving.pose.position - position_of(view.assembly, view.search, other, time);
         // A contact that has fired may be farther apart by rounding.
         let has_fired = region.cause.fired().is_some_and(|fired| fired.bodies == sorted(body, other));
@@ -119,12 +119,12 @@ fn position_of(assembly: &Assembly, search: &Neighbourhood, body: BodyId, time: 
 
 /// Adds the records of two bodies that take part in an event; true if there are any.
 fn collect_pair(view: &View<'_>, region: &mut Region, [first, second]: &[Moment<'_>; 2], time: Time) -> bool {
-    let tolerances = &view.assembly.settings.tolerances;
+    let tolerances = view.assembly.settings().tolerances;
     let mut fresh = std::mem::take(&mut region.fresh);
     fresh.clear();
     let bodies = [first.id, second.id];
     let depth = tolerances.distance_tol().max(may_have_sunk_by(view.assembly, view.sinking, bodies));
-    detect_features_of_pair(first, second, tolerances, depth, time.seconds(), &mut fresh);
+    detect_features_of_pair(first, second, &tolerances, depth, time.seconds(), &mut fresh);
     let takes_over = region.cause.run_off().is_some_and(|run_off| run_off.bodies == bodies);
     fresh.retain(|record| {
         counts_as_touching(view, record, bodies, region.cause == Cause::Start, takes_over)
@@ -135,12 +135,12 @@ fn collect_pair(view: &View<'_>, region: &mut Region, [first, second]: &[Moment<
     // A contact that has fired takes part, and one that is put back at a tick, though it may have been moved out of
     // its zone or have turned a little since: where a block lies flat, putting back one of its corners would sink
     // the other.
-    let moved = view.sinking.moved;
+    let moved = view.sinking.moved();
     let fired = region.cause.fired();
     let waiting = if region.cause == Cause::Tick { view.sinking.waiting_of(bodies) } else { &[] };
     for known in fired.iter().filter(|fired| fired.bodies == bodies).chain(waiting) {
         if !fresh.iter().any(|record| touch_of(record, bodies) == Some(*known)) {
-            let record = record_features([first, second], known.features, tolerances, time.seconds());
+            let record = record_features([first, second], known.features, &tolerances, time.seconds());
             let farthest = tolerances.distance_tol() + 2.0 * moved;
             let is_near = |record: &Collision| record.geometry.distance <= farthest;
             fresh.extend(record.filter(|record| fired == Some(*known) || is_near(record)));

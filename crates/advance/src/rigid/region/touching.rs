@@ -112,5 +112,5 @@ impl Region {
 pub(crate) fn measure_touches(assembly: &Assembly, region: &mut Region) {
     let Region { touches, motions, .. } = region;
     motions.clear();
-    motions.extend(touches.iter().map(|&touch| gap_at(assembly, touch, assembly.now)));
+    motions.extend(touches.iter().map(|&touch| gap_at(assembly, touch, assembly.now())));
 }

@@ -85,7 +85,7 @@ fn passing_features(assembly: &Assembly, bodies: [BodyId; 2], features: [Feature
         return None;
     }
     let corners = [0, 1].map(|side: usize| {
-        let moving = assembly.flyer(bodies[side]).moving_at(assembly.now);
+        let moving = assembly.flyer(bodies[side]).moving_at(assembly.now());
         corners_at(assembly, bodies[side], &moving, features[side])
     });
     let firsts = corners[0].iter().flatten();
@@ -129,7 +129,8 @@ fn corners_at(assembly: &Assembly, body: BodyId, moving: &Moving, feature: Featu
 /// For two corners that meet and pass over each other, the side of each that is flush with that of the other: 0 for
 /// the edge that ends there, 1 for the edge that starts there. `None` if they do not pass.
 fn flush_sides(assembly: &Assembly, [first, second]: [&Corner; 2]) -> Option<[usize; 2]> {
-    let (gap, accuracy) = (assembly.settings.tolerances.target_gap, assembly.settings.tolerances.accuracy);
+    let (gap, accuracy) =
+        (assembly.settings().tolerances.target_gap, assembly.settings().tolerances.accuracy);
     let (offset, velocity) = (first.place - second.place, first.velocity - second.velocity);
     if offset.length_squared() > (NEAR * gap).powi(2) {
         return None;

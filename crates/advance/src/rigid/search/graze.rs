@@ -52,7 +52,7 @@ pub(crate) fn is_grazing(assembly: &Assembly, connectors: &Connectors, record: &
 /// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
 /// bodies do not visibly overlap.
 pub(crate) fn grazing_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
-    if assembly.is_zone_seen(bodies) { 0.0 } else { -DEPTH * assembly.settings.tolerances.target_gap }
+    if assembly.is_zone_seen(bodies) { 0.0 } else { -DEPTH * assembly.settings().tolerances.target_gap }
 }
 
 /// True if features, one of them on a body held by connectors, part again in their present motion before they come
@@ -71,7 +71,7 @@ fn turns_back(assembly: &Assembly, connectors: &Connectors, touch: Touch) -> boo
         });
         (a.0 - b.0, a.1 - b.1)
     };
-    let direction = apart(assembly.now).0.normalize_or_zero();
+    let direction = apart(assembly.now()).0.normalize_or_zero();
     parts_again(assembly, connectors, touch.bodies, least, |time| {
         let (offset, velocity) = apart(time);
         (direction.dot(offset), direction.dot(velocity))
@@ -109,7 +109,7 @@ pub(crate) fn rope_grazes(assembly: &Assembly, connectors: &Connectors, id: Conn
 
 /// Excess length [m] that a grazing rope is given.
 pub(crate) fn grazing_slack(assembly: &Assembly) -> f64 {
-    DEPTH * assembly.settings.tolerances.target_gap
+    DEPTH * assembly.settings().tolerances.target_gap
 }
 
 /// True if a closing gap between bodies, one of them held by connectors, opens again in the present motion before
@@ -125,22 +125,22 @@ fn parts_again(
     if !bodies.iter().any(|&body| is_tied(connectors, body)) || !bodies.iter().any(is_moved) {
         return false;
     }
-    let (gap, rate) = gap_at(assembly.now);
+    let (gap, rate) = gap_at(assembly.now());
     let room = gap - least;
     if rate >= 0.0 || room <= 0.0 {
         return false;
     }
     // With a constant acceleration, a gap that turns back within the room does so within this time.
     let ends = bodies.into_iter().filter_map(|body| assembly.segment_end(body));
-    let known = ends.map(|end| end.since(assembly.now)).fold(f64::INFINITY, f64::min);
+    let known = ends.map(|end| end.since(assembly.now())).fold(f64::INFINITY, f64::min);
     let span = (-2.0 * room / rate).min(known);
     if span <= 0.0 {
         return false;
     }
-    let acceleration = (gap_at(assembly.now.plus(span)).1 - rate) / span;
+    let acceleration = (gap_at(assembly.now().plus(span)).1 - rate) / span;
     let turns = acceleration > 0.0 && rate * rate < 2.0 * acceleration * room;
     let nearest = -rate / acceleration;
-    turns && (nearest > known || gap_at(assembly.now.plus(nearest)).0 > least)
+    turns && (nearest > known || gap_at(assembly.now().plus(nearest)).0 > least)
 }
 
 /// True if a body is tied by a bilateral connector.

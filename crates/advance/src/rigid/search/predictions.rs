@@ -32,24 +32,24 @@ impl Searching<'_> {
 
     /// Gives a body a new box around its present motion, and predicts when it leaves that.
     fn place_box(&mut self, body: BodyId) {
-        let (lane, flyer) = (&self.search.lanes[body.index()], &self.assembly.flyers[body.index()]);
-        let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.assembly.now);
+        let (lane, flyer) = (&self.search.lanes[body.index()], self.assembly.flyer(body));
+        let fat_box = self.search.rooms[body.index()].fat_box(lane, &flyer, self.assembly.now());
         self.search.broad.set(body, fat_box);
         self.predict_leaving(body);
     }
 
     /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
-        self.search.lanes[body.index()].follow(&self.assembly.flyers[body.index()]);
+        self.search.lanes[body.index()].follow(self.assembly.flyer(body));
         self.forget_contacts_ahead(body);
         self.predict_leaving(body);
     }
 
     fn predict_leaving(&mut self, body: BodyId) {
-        let (flyer, room) = (&self.assembly.flyers[body.index()], &self.search.rooms[body.index()]);
+        let (flyer, room) = (self.assembly.flyer(body), &self.search.rooms[body.index()]);
         let lane = &mut self.search.lanes[body.index()];
         let fat_box = self.search.broad.bounds(body);
-        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.assembly.now));
+        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, &flyer, fat_box, self.assembly.now()));
         lane.stay = stay.unwrap_or(Time::NEVER);
         let source = Source::Box(body);
         match stay {
@@ -63,7 +63,7 @@ impl Searching<'_> {
         let Some(fat_box) = self.search.broad.bounds(body).copied() else { return };
         let mut near = std::mem::take(&mut self.search.neighbours);
         self.search.broad.find_overlapping(&fat_box, &mut near);
-        self.search.marks.begin(self.assembly.flyers.len());
+        self.search.marks.begin(self.assembly.flyers().len());
         near.iter().for_each(|&other| self.search.marks.set(other));
         self.search.links.clear();
         self.search.links.extend_from_slice(self.pairs.of_body(body));
@@ -71,7 +71,7 @@ impl Searching<'_> {
             let Link { pair, other } = self.search.links[index];
             // Bodies that stay marked are new neighbours.
             if !self.search.marks.take(other) {
-                self.note_prediction(pair, (Prediction::Quiet, self.assembly.now));
+                self.note_prediction(pair, (Prediction::Quiet, self.assembly.now()));
                 self.pairs.remove(pair);
             }
         }
@@ -79,7 +79,7 @@ impl Searching<'_> {
         near.retain(|&other| other != body && self.may_collide(body, other));
         near.sort_unstable();
         for &other in &near {
-            self.pairs.add(body, other, self.assembly.now);
+            self.pairs.add(body, other, self.assembly.now());
         }
         self.search.rooms[body.index()].adapt(self.pairs.of_body(body).len());
         self.search.neighbours = near;
@@ -100,7 +100,7 @@ impl Searching<'_> {
     /// known.
     pub(crate) fn predict(&mut self, pair: PairId) {
         let [a, b] = self.pairs.bodies(pair);
-        let from = self.pairs.get(pair).clear.max(self.assembly.now);
+        let from = self.pairs.get(pair).clear.max(self.assembly.now());
         let disc = self.disc_at(a, from);
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
@@ -119,7 +119,7 @@ impl Searching<'_> {
     #[inline]
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
         let lane = &self.search.lanes[body.index()];
-        let is_plain = lane.kind == LaneKind::Disc && self.assembly.settings.search.depth == 0.0;
+        let is_plain = lane.kind == LaneKind::Disc && self.assembly.settings().search.depth == 0.0;
         let Lane { radius, halo, stay, .. } = *lane;
         is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
     }
@@ -128,7 +128,7 @@ impl Searching<'_> {
     #[inline]
     fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
         let lane = &self.search.lanes[link.other.index()];
-        let tolerances = &self.assembly.settings.tolerances;
+        let tolerances = self.assembly.settings().tolerances;
         let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
         if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
             return None;
@@ -136,7 +136,7 @@ impl Searching<'_> {
         // A motion in flight is known until the body leaves its box.
         look_ahead(from, own.stay.min(lane.stay), |span| {
             let other = (lane.parabola_from(from), lane.radius);
-            disc_contact((own.parabola, own.radius), other, span, tolerances)
+            disc_contact((own.parabola, own.radius), other, span, &tolerances)
         })
     }
 
@@ -173,7 +173,7 @@ impl Searching<'_> {
             return false;
         }
         let (p, q) = (a.course_from(from, span), b.course_from(from, span));
-        let far = p.radius + q.radius + a.reach + b.reach + self.assembly.settings.tolerances.target_gap;
+        let far = p.radius + q.radius + a.reach + b.reach + self.assembly.settings().tolerances.target_gap;
         (p.center - q.center).length_squared() > far * far
     }
 
@@ -198,10 +198,9 @@ impl Searching<'_> {
         let [a, b] = self.pairs.bodies(pair);
         let (pose_a, pose_b) =
             (self.assembly.flyer(a).moving_at(time).pose, self.assembly.flyer(b).moving_at(time).pose);
-        let (shape_a, shape_b) =
-            (&self.assembly.flyers[a.index()].body().shape, &self.assembly.flyers[b.index()].body().shape);
+        let (shape_a, shape_b) = (&self.assembly.flyer(a).body().shape, &self.assembly.flyer(b).body().shape);
         let opened =
-            self.assembly.settings.tolerances.target_gap + self.assembly.settings.tolerances.accuracy;
+            self.assembly.settings().tolerances.target_gap + self.assembly.settings().tolerances.accuracy;
         let is_closed = |rule: &FeatureRule| {
             let [feature_a, feature_b] = rule.features;
             let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
@@ -218,7 +217,7 @@ impl Searching<'_> {
         let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
         let rules = self.pairs.rules(pair);
         let target_gap = self.search.lanes[a.index()].halo.min(self.search.lanes[b.index()].halo);
-        let tolerances = Tolerances { target_gap, ..self.assembly.settings.tolerances };
+        let tolerances = Tolerances { target_gap, ..self.assembly.settings().tolerances };
         let sunk = may_have_sunk_by(self.assembly, self.sinking, [a, b]);
         let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
         let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
@@ -242,8 +241,8 @@ impl Searching<'_> {
         span: f64,
     ) -> Search {
         // A target below zero does not lessen the depth: it makes no feature lie on the far side of its body.
-        let depth = tolerances.target_gap.max(0.0) + self.assembly.settings.tolerances.target_gap + sunk;
-        let search = self.assembly.settings.search;
+        let depth = tolerances.target_gap.max(0.0) + self.assembly.settings().tolerances.target_gap + sunk;
+        let search = self.assembly.settings().search;
         let settings = &SearchSettings { depth, ..search };
         PairSearch { a, b, tolerances, settings, rules }.step(0.0, span)
     }
@@ -258,7 +257,7 @@ impl Searching<'_> {
     /// come to the end of the motions known before.
     pub(crate) fn predict_all_of(&mut self, bodies: &[BodyId], changed: bool) {
         self.pairs.begin_batch();
-        let now = self.assembly.now;
+        let now = self.assembly.now();
         for &body in bodies {
             let disc = self.disc_at(body, now);
             self.pairs.enter_batch(body, !changed, &mut self.search.links);
@@ -312,6 +311,7 @@ mod tests {
     use crate::rigid::bodies::flyer::FlightLaw;
     use crate::rigid::contacts::pairs::Pair;
     use crate::rigid::group::groups::group_of;
+
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::test_scene::{FINE, resting_discs, rooms_of};
     use glam::DVec2;
@@ -321,7 +321,7 @@ mod tests {
     #[test]
     fn bodies_that_follow_an_integrator_far_from_each_other_stay_apart() {
         let mut rooms = resting_discs(&[0.0, 1.5, 2.5 + 1e-9]);
-        let now = rooms.assembly.now;
+        let now = rooms.assembly.now();
         let mut apart = |a, b| {
             let pair = rooms.pairs.between(BodyId(a), BodyId(b)).expect("they are near each other");
             assert!(group_of(&rooms.assembly, &rooms.groups, BodyId(a)).is_some(), "it is held by the floor");

@@ -21,12 +21,12 @@ impl Searching<'_> {
                     .connectors
                     .connector(id)
                     .bodies()
-                    .map(|body| self.assembly.moving_at(body, self.assembly.now));
+                    .map(|body| self.assembly.moving_at(body, self.assembly.now()));
                 let sample = self.connectors.connector(id).measure(0, &a, &b);
                 let slack = slack_of(self.assembly, &sample);
                 let state = &mut self.connectors.states[id.index()];
-                state.slack = slack + f64::from(state.repeats_at(self.assembly.now)) * sink;
-                state.clear = self.assembly.now;
+                state.slack = slack + f64::from(state.repeats_at(self.assembly.now())) * sink;
+                state.clear = self.assembly.now();
                 self.predict_rope(id, &rope);
             }
         }
@@ -59,7 +59,7 @@ impl Searching<'_> {
         let [a, b] = self.connectors.connector(id).bodies();
         let known = [a, b].map(|body| self.assembly.segment_end(body));
         let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
-        let mut from = self.connectors.states[id.index()].clear.max(self.assembly.now);
+        let mut from = self.connectors.states[id.index()].clear.max(self.assembly.now());
         if until <= from {
             self.agenda.clear(source);
             return;
@@ -106,7 +106,7 @@ impl Searching<'_> {
             (&path_b, offset_b),
             0.0,
             span,
-            &self.assembly.settings.search,
+            &self.assembly.settings().search,
         )
     }
 }
@@ -132,7 +132,7 @@ impl Searching<'_> {
 impl Searching<'_> {
     /// True if the event of a connector is a rope that goes taut; otherwise the search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
-        let now = self.assembly.now;
+        let now = self.assembly.now();
         let is_taut = self.connectors.states[id.index()].taut.is_some();
         let slack = grazing_slack(self.assembly);
         if is_taut

@@ -8,18 +8,65 @@ use halfgap_collision::{BodyId, Tolerances};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sinking {
     /// Touches that have sunk, sorted.
-    pub(crate) waiting: Vec<Touch>,
+    waiting: Vec<Touch>,
     /// Distance [m] by which bodies have been moved in being put back; zero except during a tick.
-    pub(crate) moved: f64,
+    moved: f64,
     /// Number of ticks that have gone by.
-    pub(crate) count: f64,
+    count: f64,
     /// Number of collisions of sunk contacts since the last tick.
-    pub(crate) pressed: u32,
+    pressed: u32,
     /// Buffer: indices of the laws of a region's bodies.
-    pub(crate) laws: Vec<usize>,
+    laws: Vec<usize>,
 }
 
 impl Sinking {
+    /// Notes that bodies have been moved by a distance [m] in being put back.
+    pub(crate) fn note_move(&mut self, way: f64) {
+        self.moved += way;
+    }
+
+    /// All bodies are put back.
+    pub(crate) fn end_moves(&mut self) {
+        self.moved = 0.0;
+    }
+
+    /// Counts a collision of a sunk contact; returns their number since the last tick.
+    pub(crate) fn note_pressed(&mut self) -> u32 {
+        self.pressed += 1;
+        self.pressed
+    }
+
+    /// Begins a tick.
+    pub(crate) fn begin_tick(&mut self) {
+        self.pressed = 0;
+    }
+
+    /// Number of ticks that have gone by, given a number that surely have.
+    pub(crate) fn passed(&mut self, surely: f64) -> f64 {
+        self.count = surely.max(self.count);
+        self.count
+    }
+
+    /// Takes out the touches that wait.
+    pub(crate) fn take_waiting(&mut self) -> Vec<Touch> {
+        std::mem::take(&mut self.waiting)
+    }
+
+    /// Puts in the touches that wait, sorted.
+    pub(crate) fn put_waiting(&mut self, waiting: Vec<Touch>) {
+        self.waiting = waiting;
+    }
+
+    /// Takes out the buffer of laws.
+    pub(crate) fn take_laws(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.laws)
+    }
+
+    /// Puts back the buffer of laws.
+    pub(crate) fn put_laws(&mut self, laws: Vec<usize>) {
+        self.laws = laws;
+    }
+
     pub(crate) fn wait(&mut self, touch: Touch) {
         if let Err(place) = self.waiting.binary_search(&touch) {
             self.waiting.insert(place, touch);
@@ -61,9 +108,9 @@ pub(crate) const DEEP_SHARE: f64 = 0.3;
 #[must_use]
 #[inline]
 pub(crate) fn room_to_sink(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
-    let Some(step) = assembly.settings.impulse_step else { return 0.0 };
+    let Some(step) = assembly.settings().impulse_step else { return 0.0 };
     let reach = bodies.map(|body| assembly.flyer(body).reach());
-    let Tolerances { accuracy, velocity_tol, .. } = assembly.settings.tolerances;
+    let Tolerances { accuracy, velocity_tol, .. } = assembly.settings().tolerances;
     let of_bodies = (SUNK_SHARE * reach[0].min(reach[1])).min(assembly.thinness(bodies));
     // Contacts may be anywhere in the target zone, and sink from there: a first firing lies no higher than its end.
     of_bodies.max(accuracy / FIRST_SHARE) + velocity_tol * step
@@ -73,8 +120,8 @@ pub(crate) fn room_to_sink(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
 /// or their turning, may press on at once a contact that was stopped below its zone until it is put back: it may go
 /// a fraction of the way that is left to the depth beyond which it sinks no further.
 pub(crate) fn sinks_to(assembly: &Assembly, touch: Touch, gap: f64) -> f64 {
-    let Tolerances { target_gap, accuracy, .. } = assembly.settings.tolerances;
-    if assembly.settings.impulse_step.is_none() || gap >= target_gap - accuracy {
+    let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
+    if assembly.settings().impulse_step.is_none() || gap >= target_gap - accuracy {
         return assembly.refire_gap(gap);
     }
     let left = gap - target_gap + DEEPEST_SHARE * room_to_sink(assembly, touch.bodies);
@@ -85,7 +132,7 @@ pub(crate) fn sinks_to(assembly: &Assembly, touch: Touch, gap: f64) -> f64 {
 /// they have been left to sink, have been moved, or would sink within a step; where contacts carry forces, held
 /// ones may lie deep.
 pub(crate) fn may_have_sunk_by(assembly: &Assembly, sinking: &Sinking, bodies: [BodyId; 2]) -> f64 {
-    if assembly.settings.impulse_step.is_none() {
+    if assembly.settings().impulse_step.is_none() {
         return assembly.held_depth(bodies);
     }
     // Either may have been moved against the other.
@@ -94,5 +141,32 @@ pub(crate) fn may_have_sunk_by(assembly: &Assembly, sinking: &Sinking, bodies: [
         // A body that is turned as it is put back sinks at other places.
         return BEHIND * room_to_sink(assembly, bodies) + moved.min(assembly.thinness(bodies));
     }
-    assembly.settings.search.depth.max(moved).min(assembly.thinness(bodies))
+    assembly.settings().search.depth.max(moved).min(assembly.thinness(bodies))
+}
+
+impl Sinking {
+    // getters of Sinking
+    /// Number of ticks that have gone by.
+    #[inline]
+    pub(crate) fn count(&self) -> f64 {
+        self.count
+    }
+
+    /// Distance [m] by which bodies have been moved in being put back; zero except during a tick.
+    #[inline]
+    pub(crate) fn moved(&self) -> f64 {
+        self.moved
+    }
+
+    /// Number of collisions of sunk contacts since the last tick.
+    #[inline]
+    pub(crate) fn pressed(&self) -> u32 {
+        self.pressed
+    }
+
+    /// Touches that have sunk, sorted.
+    #[inline]
+    pub(crate) fn waiting(&self) -> &[Touch] {
+        &self.waiting
+    }
 }

@@ -339,7 +339,7 @@ mod tests {
         for below in [0.0, ROUNDING, 0.5e-9] {
             // A disc that falls, its contact with the floor touched without force.
             let mut rooms = resting_discs(&[0.0]);
-            let sink = rooms.assembly.settings.tolerances.sink();
+            let sink = rooms.assembly.settings().tolerances.sink();
             let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
             group.idle = std::mem::take(&mut group.rows);
             group.idle[0].gap += below - sink;

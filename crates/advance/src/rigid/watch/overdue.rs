@@ -92,7 +92,7 @@ mod tests {
     fn a_contact_that_pulls_a_little_from_the_start_lets_go() {
         for late in [1e-8, 1e-6, 1e-3] {
             let mut rooms = resting_discs(&[0.0]);
-            rooms.assembly.laws.all = vec![Arc::new(Lift)];
+            rooms.assembly.set_laws(vec![Arc::new(Lift)]);
             let group = stepped(rooms, |group| {
                 group.laws = vec![0];
                 group.start = Time::from_seconds(1.0 + late);
@@ -128,7 +128,7 @@ mod tests {
     fn a_contact_that_goes_on_beyond_its_features_by_many_short_steps_runs_off() {
         const BEYOND: f64 = 1e-4;
         let mut rooms = block_on_its_corner();
-        rooms.assembly.settings.steps.largest_step = Some(0.3 * BEYOND);
+        rooms.assembly.settings_mut().steps.largest_step = Some(0.3 * BEYOND);
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         let angle = group.state[2] + 0.2 + BEYOND;
         turn_on_its_corner(&mut group, angle, 1.0);

@@ -3,26 +3,47 @@
 use crate::rigid::error::AdvanceError;
 use crate::rigid::zeno::steps::Pace;
 use crate::time::Time;
+use halfgap_collision::BodyId;
 
 /// Recent events and steps, from which sequences that would never end are recognised.
 #[derive(Clone, Debug)]
 pub(crate) struct Zeno {
     /// Recent events of each body.
-    pub(crate) recent: Vec<Recent>,
+    pub(super) recent: Vec<Recent>,
     /// The pace of the group that each body leads.
-    pub(crate) paces: Vec<Pace>,
+    pub(super) paces: Vec<Pace>,
     /// Total time [s] to be simulated; 0 if it is not known.
-    pub(crate) duration: f64,
+    pub(super) duration: f64,
     /// Time at which a pair last fired more often than [`CALM_REPEATS`](super::repeats::CALM_REPEATS).
-    pub(crate) last_insistent: Option<Time>,
+    pub(super) last_insistent: Option<Time>,
     /// Time at which a group was last ended as soon as it was made, because one of its contacts pulled.
-    pub(crate) last_pull: Option<Time>,
+    pub(super) last_pull: Option<Time>,
     /// [`AdvanceError::Crawls`] or [`AdvanceError::TooFast`], to be returned once the present event is over; the system
     /// stays valid.
-    pub(crate) crawls: Option<AdvanceError>,
+    pub(super) crawls: Option<AdvanceError>,
 }
 
 impl Zeno {
+    /// Sets the total time [s] to be simulated.
+    pub(crate) fn set_duration(&mut self, duration: f64) {
+        self.duration = duration;
+    }
+
+    /// Notes that a group is ended now, as soon as it was made, because one of its contacts pulled.
+    pub(crate) fn note_pull(&mut self, now: Time) {
+        self.last_pull = Some(now);
+    }
+
+    /// Takes out the error that is to be returned once the present event is over.
+    pub(crate) fn take_crawls(&mut self) -> Option<AdvanceError> {
+        self.crawls.take()
+    }
+
+    /// Forgets the recent events of a body.
+    pub(crate) fn forget_events(&mut self, body: BodyId) {
+        self.recent[body.index()] = Recent::default();
+    }
+
     /// Makes the memory of `body_count` bodies without any events.
     pub(crate) fn new(body_count: usize) -> Self {
         Self {
@@ -45,4 +66,13 @@ pub(crate) struct Recent {
     pub(super) load: usize,
     /// Time of the last event, if there was any.
     pub(super) last: Option<Time>,
+}
+
+impl Zeno {
+    // getters of Zeno
+    /// Time at which a pair last fired more often than [`CALM_REPEATS`](super::repeats::CALM_REPEATS).
+    #[inline]
+    pub(crate) fn last_insistent(&self) -> Option<Time> {
+        self.last_insistent
+    }
 }

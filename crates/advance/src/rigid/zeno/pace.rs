@@ -33,7 +33,7 @@ const HASTE: f64 = 1e-4;
 pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
     let pace = &mut zeno.paces[group.leader().index()];
     if let Some(mean) = pace.few.note(group.start) {
-        pace.is_hasty = mean < HASTE * assembly.settings.resolution_time;
+        pace.is_hasty = mean < HASTE * assembly.settings().resolution_time;
     }
     let mean = pace.all.note(group.start);
     zeno.crawls = None;
@@ -56,7 +56,7 @@ pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
 
 /// Error of a body of a group that turns too often in the time to be simulated, and is stepped turn by turn.
 fn turns_without_end(assembly: &Assembly, zeno: &Zeno, group: &Group, step: f64) -> Option<AdvanceError> {
-    let elapsed = group.start.since(assembly.start);
+    let elapsed = group.start.since(assembly.start());
     group.bodies.iter().enumerate().find_map(|(place, &body)| {
         let BodyState { angle, angular_velocity, .. } = body_state(&group.state, group.bodies.len(), place);
         // One that swings to and fro does not get anywhere; one that turns more than once in a step is not
@@ -70,7 +70,7 @@ fn turns_without_end(assembly: &Assembly, zeno: &Zeno, group: &Group, step: f64)
 
 /// Names of the laws that act on a group.
 pub(crate) fn names_of_laws(assembly: &Assembly, group: &Group) -> Vec<String> {
-    group.laws.iter().map(|&law| assembly.laws.all[law].name().to_owned()).collect()
+    group.laws.iter().map(|&law| assembly.laws().all[law].name().to_owned()).collect()
 }
 
 /// Forgets the steps of bodies that have taken part in an impact: their groups make progress.
@@ -100,7 +100,7 @@ mod tests {
     fn haste(step: f64) -> [bool; 2] {
         let mut rooms = resting_discs(&[0.0]);
         let mut work = rooms.work.take().expect("the start has made it");
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now);
+        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         for _ in 0..=FEW_STEPS {
             note_pace(&rooms.assembly, &mut rooms.zeno, &group);
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_group_is_hasty_whose_steps_are_short_beside_the_resolution_time() {
-        let soon = resting_discs(&[0.0]).assembly.settings.resolution_time;
+        let soon = resting_discs(&[0.0]).assembly.settings().resolution_time;
         assert_eq!(haste(0.5 * HASTE * soon), [true, false]);
         assert_eq!(haste(2.0 * HASTE * soon), [false, false]);
     }

@@ -21,7 +21,7 @@ pub(crate) fn has_pulled(zeno: &Zeno, time: Time) -> bool {
 /// Number of times beyond [`CALM_REPEATS`] that a pair has fired at the present time.
 pub(crate) fn repeats_beyond_calm(assembly: &Assembly, pairs: &Pairs, pair: PairId) -> u32 {
     let past = pairs.past(pair);
-    let is_now = past.last_contact.is_some_and(|last| is_same_time(last, assembly.now));
+    let is_now = past.last_contact.is_some_and(|last| is_same_time(last, assembly.now()));
     if is_now { past.repeats.saturating_sub(CALM_REPEATS) } else { 0 }
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn note_repeat(
     zeno: &mut Zeno,
     pair: PairId,
 ) -> Result<u32, AdvanceError> {
-    let now = assembly.now;
+    let now = assembly.now();
     let bodies = pairs.bodies(pair);
     let entry = pairs.past_mut(pair);
     let is_repeat = entry.last_contact.is_some_and(|last| is_same_time(last, now));
@@ -82,10 +82,10 @@ mod tests {
         let (mut rooms, pair, features) = meeting();
         // The start has seen the pair at its target: a moment later it has been elsewhere.
         rooms.pairs.seen_mut(pair).clear();
-        rooms.books.told.has_hit = false;
+        rooms.books.begin_event(rooms.assembly.now());
         handle_contact(&mut rooms, pair, features).expect("one row");
-        assert!(rooms.books.told.has_hit);
-        assert_eq!(rooms.books.told.last_impact.rows[0].rate_after, 2.0);
+        assert!(rooms.books.told().has_hit());
+        assert_eq!(rooms.books.told().last_impact().rows[0].rate_after, 2.0);
     }
 
     #[test]
@@ -94,11 +94,11 @@ mod tests {
         for _ in 0..=CALM_REPEATS {
             note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair).expect("not stuck yet");
         }
-        rooms.books.told.has_hit = false;
+        rooms.books.begin_event(rooms.assembly.now());
         handle_contact(&mut rooms, pair, features).expect("one row");
-        assert!(rooms.books.told.has_hit);
-        assert_eq!(rooms.books.told.last_impact.rows[0].rate_after, 0.0);
-        assert_eq!(rooms.books.ledger.captures, -1.0);
+        assert!(rooms.books.told().has_hit());
+        assert_eq!(rooms.books.told().last_impact().rows[0].rate_after, 0.0);
+        assert_eq!(rooms.books.ledger().captures, -1.0);
     }
 
     #[test]
@@ -116,7 +116,8 @@ mod tests {
     fn time_that_goes_by_ends_the_count() {
         let (mut rooms, pair, _) = meeting();
         for _ in 0..3 * MOST_REPEATS {
-            rooms.assembly.now = rooms.assembly.now.plus(1e-12);
+            let later = rooms.assembly.now().plus(1e-12);
+            rooms.assembly.set_now(later);
             assert_eq!(note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair), Ok(0));
         }
     }

@@ -48,11 +48,11 @@ pub(crate) fn note_events(
     of: (&[BodyId], &[Collision]),
 ) -> bool {
     let (bodies, records) = of;
-    let (now, window) = (assembly.now, assembly.settings.resolution_time);
+    let (now, window) = (assembly.now(), assembly.settings().resolution_time);
     let speed = records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
-    let Tolerances { target_gap, accuracy, .. } = assembly.settings.tolerances;
+    let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
     let (wide, still) = (WIDE * target_gap, STILL * accuracy);
-    let at_once = AT_ONCE * assembly.settings.steps.length / assembly.settings.steps.speed;
+    let at_once = AT_ONCE * assembly.settings().steps.length / assembly.settings().steps.speed;
     let is_often = bodies.iter().any(|body| zeno.recent[body.index()].load > LOAD_WITHOUT_COST);
     let is_costly = is_often && is_costly(assembly, of);
     let mut most = 0;
@@ -76,7 +76,7 @@ pub(crate) fn note_events(
     let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * records.len();
     let is_storm = most > LOAD_OF_NEITHER * calm;
     if is_storm {
-        books.counts.storms += 1;
+        books.note_storm();
         for &body in bodies {
             zeno.recent[body.index()].load = 0;
         }
@@ -94,7 +94,7 @@ fn is_costly(assembly: &Assembly, (bodies, records): (&[BodyId], &[Collision])) 
     });
     let moving = bodies.iter().map(|&body| {
         let flyer = assembly.flyer(body);
-        flyer.body().kinetic_energy(&flyer.state_at(assembly.now))
+        flyer.body().kinetic_energy(&flyer.state_at(assembly.now()))
     });
     closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
 }

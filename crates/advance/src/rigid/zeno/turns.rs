@@ -27,9 +27,9 @@ pub(crate) fn note_search(assembly: &Assembly, pairs: &mut Pairs, zeno: &mut Zen
     past.searches = if goes_on { past.searches + 1 } else { 0 };
     if past.searches >= SEARCHES {
         past.searches = 0;
-        let spin = |body: BodyId| assembly.moving_at(body, assembly.now).angular_velocity;
+        let spin = |body: BodyId| assembly.moving_at(body, assembly.now()).angular_velocity;
         let mut bodies = pairs.bodies(pair).into_iter();
-        zeno.crawls = bodies.find_map(|body| too_fast(zeno, body, spin(body), assembly.now));
+        zeno.crawls = bodies.find_map(|body| too_fast(zeno, body, spin(body), assembly.now()));
     }
 }
 
