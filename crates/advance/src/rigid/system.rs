@@ -152,7 +152,7 @@ impl RigidSystem {
     #[must_use]
     #[inline]
     pub fn excluded(&self) -> &[(BodyId, BodyId)] {
-        &self.rooms.search.excluded
+        self.rooms.search.excluded()
     }
 
     /// Depth [m] by which a pair of bodies may sink below the target gap until it is put back; zero where contacts

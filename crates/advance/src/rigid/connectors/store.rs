@@ -11,10 +11,10 @@ use halfgap_collision::{
 /// All connectors with their states, and lists of them by body.
 #[derive(Clone, Debug)]
 pub(crate) struct Connectors {
-    pub(crate) all: Vec<Connector>,
+    pub(super) all: Vec<Connector>,
     /// Connectors of each body.
-    of: ByBody<ConnectorId>,
-    pub(crate) states: Vec<ConnectorState>,
+    pub(super) of: ByBody<ConnectorId>,
+    pub(super) states: Vec<ConnectorState>,
 }
 
 impl Connectors {
@@ -38,28 +38,28 @@ impl Connectors {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ConnectorState {
     /// Place of its point on a rail.
-    pub(crate) hint: Option<RailHint>,
+    pub(super) hint: Option<RailHint>,
     /// Sides, before and after, of the corner of a rail that the point is in; `None` if it is in none.
-    pub(crate) corner: Option<[RailHint; 2]>,
+    pub(super) corner: Option<[RailHint; 2]>,
     /// Time before which a rope does not go taut.
-    pub(crate) clear: Time,
+    pub(super) clear: Time,
     /// Time at which a rope goes taut; `None` if it does not while the motions are known, or the search has not come so
     /// far.
-    pub(crate) taut: Option<Time>,
+    pub(super) taut: Option<Time>,
     /// Excess length [m] that a rope is given while it is at its length and does not tighten: it goes taut at the sum
     /// of both.
-    pub(crate) slack: f64,
+    pub(super) slack: f64,
     /// True if it is unilateral and held: its row then takes part in events at any gap.
-    pub(crate) held: bool,
+    pub(super) held: bool,
     /// Time at which the rope last went taut, or the stop was met.
-    pub(crate) last_taut: Option<Time>,
+    pub(super) last_taut: Option<Time>,
     /// Number of times that it did so before without time going by.
-    pub(crate) repeats: u32,
+    pub(super) repeats: u32,
     /// True if a group watches it as a stop.
-    pub(crate) is_watched: bool,
+    pub(super) is_watched: bool,
     /// Of a stop that a group watches: the start of the group's segment, and the place of the point there; `None` once
     /// the place that the point has come to is noted.
-    pub(crate) follow: Option<(Time, RailHint)>,
+    pub(super) follow: Option<(Time, RailHint)>,
 }
 
 impl ConnectorState {
@@ -208,9 +208,105 @@ impl Connectors {
         self.states[id.index()].is_watched
     }
 
+    /// Notes whether a unilateral connector is held.
+    pub(crate) fn set_held(&mut self, id: ConnectorId, held: bool) {
+        self.states[id.index()].held = held;
+    }
+
+    /// Notes that a rope has gone taut, or a stop is met, at a time.
+    pub(crate) fn note_taut(&mut self, id: ConnectorId, now: Time) {
+        self.states[id.index()].note_taut(now);
+    }
+
+    /// Sets the time before which a rope does not go taut, and that at which it does, if known.
+    pub(crate) fn set_taut(&mut self, id: ConnectorId, clear: Time, taut: Option<Time>) {
+        let state = &mut self.states[id.index()];
+        (state.clear, state.taut) = (clear, taut);
+    }
+
+    /// Sets the excess length [m] that a rope is given.
+    pub(crate) fn set_slack(&mut self, id: ConnectorId, slack: f64) {
+        self.states[id.index()].slack = slack;
+    }
+
+    /// Sets the place of the point of a stop; the distance left before the stop stays.
+    pub(crate) fn set_stop_hint(&mut self, id: ConnectorId, hint: RailHint) {
+        let state = &mut self.states[id.index()];
+        let left = state.hint.and_then(|hint| hint.before_stop());
+        state.hint = Some(hint.with_before_stop(left));
+    }
+
+    /// Notes that a group watches a stop along a segment that starts at a time.
+    pub(crate) fn watch(&mut self, stop: &Stop, start: Time) {
+        let state = &mut self.states[stop.id.index()];
+        state.is_watched = true;
+        state.follow = stop.hint.filter(|_| !stop.is_noted).map(|hint| (start, hint));
+    }
+
+    /// Notes that the place to which the point of a stop has come is known: it is followed no more.
+    pub(crate) fn stop_following(&mut self, id: ConnectorId) {
+        self.states[id.index()].follow = None;
+    }
+
     /// Notes that no group watches a connector any more.
     pub(crate) fn unwatch(&mut self, id: ConnectorId) {
         let state = &mut self.states[id.index()];
         (state.is_watched, state.follow) = (false, None);
+    }
+}
+
+impl Connectors {
+    // getters of Connectors
+    /// The all.
+    #[inline]
+    pub(crate) fn all(&self) -> &[Connector] {
+        &self.all
+    }
+
+    /// The states.
+    #[inline]
+    pub(crate) fn states(&self) -> &[ConnectorState] {
+        &self.states
+    }
+}
+
+impl ConnectorState {
+    // getters of ConnectorState
+    /// Time before which a rope does not go taut.
+    #[inline]
+    pub(crate) fn clear(&self) -> Time {
+        self.clear
+    }
+
+    /// Sides, before and after, of the corner of a rail that the point is in; `None` if it is in none.
+    #[inline]
+    pub(crate) fn corner(&self) -> Option<[RailHint; 2]> {
+        self.corner
+    }
+
+    /// True if it is unilateral and held: its row then takes part in events at any gap.
+    #[inline]
+    pub(crate) fn held(&self) -> bool {
+        self.held
+    }
+
+    /// Place of its point on a rail.
+    #[inline]
+    pub(crate) fn hint(&self) -> Option<RailHint> {
+        self.hint
+    }
+
+    /// Excess length [m] that a rope is given while it is at its length and does not tighten: it goes taut at the sum
+    /// of both.
+    #[inline]
+    pub(crate) fn slack(&self) -> f64 {
+        self.slack
+    }
+
+    /// Time at which a rope goes taut; `None` if it does not while the motions are known, or the search has not come so
+    /// far.
+    #[inline]
+    pub(crate) fn taut(&self) -> Option<Time> {
+        self.taut
     }
 }

@@ -1,6 +1,7 @@
 //! Pairs of bodies whose boxes overlap, with the prediction of their next contact, or of the time until which there is
 //! none.
 
+use crate::rigid::bodies::instant::is_same_time;
 use crate::rigid::contacts::touch::{sorted, touch_of};
 use crate::time::Time;
 use halfgap_collision::{BodyId, Collision, FeatureRule};
@@ -26,13 +27,13 @@ pub(crate) enum Prediction {
 #[repr(align(32))]
 pub(crate) struct Pair {
     /// Time before which there is no contact.
-    pub(crate) clear: Time,
-    pub(crate) prediction: Prediction,
+    pub(super) clear: Time,
+    pub(super) prediction: Prediction,
     /// Last batch of predictions that the pair was in.
-    batch: u16,
+    pub(super) batch: u16,
     /// True if rules change the search of any feature pair.
-    pub(crate) has_rules: bool,
-    alive: bool,
+    pub(super) has_rules: bool,
+    pub(super) alive: bool,
 }
 
 /// A pair as one of its bodies sees it.
@@ -46,15 +47,15 @@ pub(crate) struct Link {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairPast {
     /// Rules that change the search of feature pairs.
-    rules: Vec<FeatureRule>,
+    pub(super) rules: Vec<FeatureRule>,
     /// Feature pairs that have touched lately.
-    seen: Vec<Seen>,
+    pub(super) seen: Vec<Seen>,
     /// Number of contacts handled without time going by since the first of them.
-    pub(crate) repeats: u32,
+    pub(super) repeats: u32,
     /// Time of the last contact.
-    pub(crate) last_contact: Option<Time>,
+    pub(super) last_contact: Option<Time>,
     /// Number of times in succession that the search for the next contact went on.
-    pub(crate) searches: u32,
+    pub(super) searches: u32,
 }
 
 impl PairPast {
@@ -161,6 +162,43 @@ impl Pairs {
         &mut self.pasts[id.0 as usize]
     }
 
+    /// Forgets what has touched lately of all pairs of a body.
+    pub(crate) fn forget_seen_of(&mut self, body: BodyId) {
+        for link in &self.of_body[body.index()] {
+            self.pasts[link.pair.0 as usize].seen.clear();
+        }
+    }
+
+    /// Counts a contact of a pair at a time; returns how many came before without time going by.
+    pub(crate) fn count_contact(&mut self, id: PairId, now: Time) -> u32 {
+        let past = &mut self.pasts[id.0 as usize];
+        let is_repeat = past.last_contact.is_some_and(|last| is_same_time(last, now));
+        past.repeats = if is_repeat { past.repeats + 1 } else { 0 };
+        past.last_contact = Some(now);
+        past.repeats
+    }
+
+    /// Counts a search of a pair that went on, or ended; returns how many have gone on in succession.
+    pub(crate) fn count_search(&mut self, id: PairId) -> u32 {
+        let goes_on = self.get(id).prediction == Prediction::SearchOn;
+        let past = &mut self.pasts[id.0 as usize];
+        past.searches = if goes_on { past.searches + 1 } else { 0 };
+        past.searches
+    }
+
+    /// Counts the searches of a pair anew.
+    pub(crate) fn forget_searches(&mut self, id: PairId) {
+        self.pasts[id.0 as usize].searches = 0;
+    }
+
+    /// Sets the prediction of a pair, and the time until which it is clear; returns the prediction before.
+    #[inline]
+    pub(crate) fn foresee(&mut self, id: PairId, prediction: Prediction, clear: Time) -> Prediction {
+        let pair = &mut self.pairs[id.0 as usize];
+        pair.clear = clear;
+        std::mem::replace(&mut pair.prediction, prediction)
+    }
+
     /// Begins a new batch of predictions, without pairs.
     pub(crate) fn begin_batch(&mut self) {
         self.batch = self.batch.wrapping_add(1);
@@ -260,4 +298,46 @@ pub(crate) fn is_held_contact(pairs: &Pairs, record: &Collision, bodies: [BodyId
 pub(crate) fn is_likely(pairs: &Pairs, record: &Collision) -> Option<bool> {
     let [a, b] = record.bodies();
     is_held_contact(pairs, record, sorted(a, b)).then_some(true)
+}
+
+impl PairPast {
+    // getters of PairPast
+    /// Time of the last contact.
+    #[inline]
+    pub(crate) fn last_contact(&self) -> Option<Time> {
+        self.last_contact
+    }
+
+    /// Number of contacts handled without time going by since the first of them.
+    #[inline]
+    pub(crate) fn repeats(&self) -> u32 {
+        self.repeats
+    }
+
+    /// Number of times in succession that the search for the next contact went on.
+    #[inline]
+    pub(crate) fn searches(&self) -> u32 {
+        self.searches
+    }
+}
+
+impl Pair {
+    // getters of Pair
+    /// Time before which there is no contact.
+    #[inline]
+    pub(crate) fn clear(&self) -> Time {
+        self.clear
+    }
+
+    /// True if rules change the search of any feature pair.
+    #[inline]
+    pub(crate) fn has_rules(&self) -> bool {
+        self.has_rules
+    }
+
+    /// The prediction.
+    #[inline]
+    pub(crate) fn prediction(&self) -> Prediction {
+        self.prediction
+    }
 }

@@ -358,7 +358,7 @@ pub(crate) fn with_lean(assembly: &Assembly, connectors: &Connectors, row: HeldR
 pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Mechanism<'a> {
     Mechanism {
         flyers: assembly.flyers(),
-        connectors: &connectors.all,
+        connectors: connectors.all(),
         tolerances: &assembly.settings().tolerances,
     }
 }

@@ -46,9 +46,9 @@ pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
         retain_staying(&rooms.assembly, &rooms.connectors, region);
     }
     // Beside a seam a corner may be as near to the next corner, and pass over it.
-    region.records.retain(|record| !(closes_fast(record) && passes_by(&rooms.search, record)));
+    region.retain_records(|record| !(closes_fast(record) && passes_by(&rooms.search, record)));
     let rest = rooms.assembly.rest_speed();
-    if work.region.records.iter().any(|record| record.motion.normal_velocity < -rest) {
+    if work.region.records().iter().any(|record| record.motion.normal_velocity < -rest) {
         return collide(rooms, work);
     }
     go_on(rooms, work)
@@ -56,9 +56,9 @@ pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
 
 /// True if another contact closes of the two bodies whose contact has run off its features.
 fn neighbour_closes(assembly: &Assembly, region: &Region) -> bool {
-    let Some(run_off) = region.cause.run_off() else { return false };
+    let Some(run_off) = region.cause().run_off() else { return false };
     let rest = assembly.rest_speed();
-    let mut closing = region.records.iter().filter(|record| record.motion.normal_velocity < -rest);
+    let mut closing = region.records().iter().filter(|record| record.motion.normal_velocity < -rest);
     closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
 }
 
@@ -66,22 +66,16 @@ fn neighbour_closes(assembly: &Assembly, region: &Region) -> bool {
 /// only from the angle up to which joints are smooth, and is stopped. Where another contact closes fast at the same
 /// moment, the impact does that.
 fn hand_over(rooms: &mut Rooms, work: &mut EventWork) {
-    let Some(run_off) = work.region.cause.run_off() else { return };
+    let Some(run_off) = work.region.cause().run_off() else { return };
     let is_neighbour = |record: &Collision| {
         let bodies = sorted(record.parties.primary.body, record.parties.normal.body);
         let (rate, speed) = (record.motion.normal_velocity, record.motion.center_velocity.length());
         bodies == run_off.bodies && rate.abs() <= SEAM_ANGLE * speed
     };
-    let records = &mut work.region.records;
-    if records.iter().any(|record| closes_fast(record) && !is_neighbour(record)) {
+    if work.region.records().iter().any(|record| closes_fast(record) && !is_neighbour(record)) {
         return;
     }
-    let mut any = false;
-    for record in records.iter_mut().filter(|record| is_neighbour(record)) {
-        record.parties.bilateral = true;
-        any = true;
-    }
-    if any {
+    if work.region.mark(is_neighbour) {
         stop_bilaterally(rooms, work);
     }
 }
@@ -91,7 +85,7 @@ fn hand_over(rooms: &mut Rooms, work: &mut EventWork) {
 fn stop_bilaterally(rooms: &mut Rooms, work: &mut EventWork) {
     let now = rooms.assembly.now();
     work.before.clear();
-    work.before.extend(work.region.bodies.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(now)));
+    work.before.extend(work.region.bodies().iter().map(|&body| rooms.assembly.flyer(body).unwound_at(now)));
     // A stop that may as well be left out is not worth a long solve.
     let manner = Manner::Trial;
     let outcome = resolve_impact(rooms, &mut work.region, &mut work.impact, &mut work.stop, now, manner);
@@ -101,11 +95,11 @@ fn stop_bilaterally(rooms: &mut Rooms, work: &mut EventWork) {
     let is_stopped = outcome.is_ok()
         && has_stopped(&rooms.assembly, &work.region)
         && is_modest(&rooms.assembly, &work.stop, &work.region, &work.before);
-    unmark(&mut work.region);
+    work.region.unmark();
     if is_stopped {
         book_impact(&rooms.assembly, &mut rooms.books, &work.stop, Booking::Capture);
     } else if outcome.is_ok() {
-        for (&body, &state) in work.region.bodies.iter().zip(&work.before) {
+        for (&body, &state) in work.region.bodies().iter().zip(&work.before) {
             rooms.assembly.flyer_mut(body).fly_from(now, state);
         }
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, now);
@@ -119,7 +113,7 @@ fn is_modest(assembly: &Assembly, report: &ImpactReport, region: &Region, before
     let stopped = report.rows.iter().fold(0.0f64, |most, row| most.max(row.rate_before.abs()));
     let impulse = report.rows.iter().fold(0.0f64, |most, row| most.max(row.impulse.abs()));
     let (mut fastest, mut largest) = (0.0f64, 0.0f64);
-    for (&body, before) in region.bodies.iter().zip(before) {
+    for (&body, before) in region.bodies().iter().zip(before) {
         let flyer = assembly.flyer(body);
         let after = flyer.unwound_at(assembly.now());
         let moved = after.velocity.distance(before.velocity);
@@ -134,16 +128,9 @@ fn is_modest(assembly: &Assembly, report: &ImpactReport, region: &Region, before
 /// True if the contacts of a region that are marked as bilateral rest, and no other closes.
 fn has_stopped(assembly: &Assembly, region: &Region) -> bool {
     let rest = assembly.rest_speed();
-    let mut contacts = region.records.iter().filter(|record| record.parties.primary.site.is_some());
+    let mut contacts = region.records().iter().filter(|record| record.parties.primary.site.is_some());
     contacts.all(|record| {
         let rate = record.motion.normal_velocity;
         rate >= -rest && (rate <= rest || !record.parties.bilateral)
     })
-}
-
-/// Removes the marks as bilateral from the contacts of a region.
-fn unmark(region: &mut Region) {
-    for record in &mut region.records {
-        record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
-    }
 }

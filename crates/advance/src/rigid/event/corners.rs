@@ -19,7 +19,7 @@ use halfgap_collision::{Collision, ConnectorId};
 /// Puts a point that two forces do not hold in its corner on one of the sides, and stops its velocity across that
 /// side. True if there is such a point: forces are to be found anew.
 pub(crate) fn leave_loose_corner(rooms: &mut Rooms, work: &mut EventWork) -> Result<bool, AdvanceError> {
-    let held = &work.settling.held;
+    let held = work.settling.held();
     let sides = |id: ConnectorId| {
         [0, 1].map(|side| held.iter().any(|(_, row)| row.source == RowSource::Connector(id, side)))
     };
@@ -57,11 +57,13 @@ pub(crate) fn is_left_alone(
     corner: Corner,
 ) -> bool {
     let [body, _] = connectors.connector(corner.id).bodies();
-    let record = &region.records[corner.records[0]];
+    let record = &region.records()[corner.records[0]];
     let kinematics = &record.motion.kinematics;
     let is_still = corner.rates(region) == [0.0; 2] && kinematics.gamma == 0.0;
-    let only_rows =
-        region.records.iter().all(|other| !other.involves_body(body) || other.connector() == Some(corner.id));
+    let only_rows = region
+        .records()
+        .iter()
+        .all(|other| !other.involves_body(body) || other.connector() == Some(corner.id));
     let flyer = assembly.flyer(body);
     is_still && only_rows && assembly.laws().of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
 }
@@ -70,7 +72,7 @@ pub(crate) fn is_left_alone(
 /// impact.
 fn stop_across(rooms: &mut Rooms, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
     let (now, rest) = (rooms.assembly.now(), rooms.assembly.rest_speed());
-    let mut records = work.region.records.iter();
+    let mut records = work.region.records().iter();
     let moves =
         |record: &Collision| record.connector() == Some(id) && record.motion.normal_velocity.abs() > rest;
     if !records.any(moves) {

@@ -49,15 +49,15 @@ enum CutBy {
 pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
     complete_dense(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups);
     region
-        .groups
+        .groups()
         .iter()
         .for_each(|&leader| note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader));
     let seen = rooms.assembly.now();
     measure_touches(&rooms.assembly, region);
-    let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause, seen).map(|(gap, _)| gap);
+    let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause(), seen).map(|(gap, _)| gap);
     let time = cut_exactly(rooms, region, gap);
     if is_off(&rooms.view(), region, gap, time) {
-        for &leader in &region.groups {
+        for &leader in region.groups() {
             cut_group(
                 &mut rooms.assembly,
                 &mut rooms.connectors,
@@ -70,7 +70,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
     } else {
         rooms.assembly.set_now(time);
     }
-    for &leader in &region.groups {
+    for &leader in region.groups() {
         dissolve(rooms, leader);
     }
 }
@@ -80,7 +80,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
 fn cut_exactly(rooms: &mut Rooms, region: &Region, gap: Option<f64>) -> Time {
     let mut time = rooms.assembly.now();
     for round in 0..=MOST_CORRECTIONS {
-        for &leader in &region.groups {
+        for &leader in region.groups() {
             cut_group(
                 &mut rooms.assembly,
                 &mut rooms.connectors,
@@ -94,10 +94,10 @@ fn cut_exactly(rooms: &mut Rooms, region: &Region, gap: Option<f64>) -> Time {
             break;
         }
         let corrected = passed(&rooms.assembly, &rooms.pairs, &rooms.agenda, region, time)
-            .or_else(|| corrected(&rooms.assembly, &rooms.connectors, region.cause, gap, time));
+            .or_else(|| corrected(&rooms.assembly, &rooms.connectors, region.cause(), gap, time));
         let Some(corrected) = corrected else { break };
         let starts =
-            region.groups.iter().filter_map(|&leader| rooms.groups.by_leader[leader.index()].as_deref());
+            region.groups().iter().filter_map(|&leader| rooms.groups.by_leader[leader.index()].as_deref());
         let latest = starts.map(|group| group.start).max().unwrap_or(time);
         if corrected <= latest {
             break;
@@ -136,9 +136,9 @@ pub(crate) fn passed(
         return None;
     }
     let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
-    let links = region.bodies.iter().flat_map(|&body| pairs.of_body(body));
+    let links = region.bodies().iter().flat_map(|&body| pairs.of_body(body));
     let contacts = links.filter_map(|link| {
-        let Prediction::Contact(features) = pairs.get(link.pair).prediction else { return None };
+        let Prediction::Contact(features) = pairs.get(link.pair).prediction() else { return None };
         let predicted = agenda.time_of(Source::Pair(link.pair))?;
         let bodies = pairs.bodies(link.pair);
         let has_sunk = || gap_at(assembly, Touch { bodies, features }, time).0 < least;
@@ -151,11 +151,11 @@ pub(crate) fn passed(
 /// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
 fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> bool {
     let allowed = SEEN_SHARE * view.assembly.settings().tolerances.accuracy;
-    let fired = gap_of_cause(view.assembly, view.connectors, region.cause, time).zip(gap);
+    let fired = gap_of_cause(view.assembly, view.connectors, region.cause(), time).zip(gap);
     if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
         return true;
     }
-    let mut seen = region.touches.iter().zip(&region.motions);
+    let mut seen = region.touches().iter().zip(region.motions());
     let moves_touches = seen.any(|(&touch, &(gap, _))| {
         time == view.assembly.now() && (gap_at(view.assembly, touch, time).0 - gap).abs() > allowed
     });
@@ -172,7 +172,7 @@ fn is_in_another(assembly: &Assembly, pairs: &Pairs, body: BodyId, region: &Regi
         let touches = |touch: &Touch| touch.bodies == pairs.bodies(pair);
         let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
         finite
-            && !region.touches.iter().any(touches)
+            && !region.touches().iter().any(touches)
             && shape(body).relation(&pose(body), &shape(other), &pose(other)) == Relation::Crossing
     })
 }
@@ -221,7 +221,7 @@ fn strayed<'a>(
     time: Time,
 ) -> impl Iterator<Item = BodyId> + 'a {
     let allowed = assembly.settings().tolerances.accuracy;
-    let groups = region.groups.iter().filter_map(|&leader| groups.by_leader[leader.index()].as_deref());
+    let groups = region.groups().iter().filter_map(|&leader| groups.by_leader[leader.index()].as_deref());
     groups.flat_map(move |group| {
         let offset = time.since(group.start).max(0.0);
         let places = group.bodies.iter().zip(&group.paths);

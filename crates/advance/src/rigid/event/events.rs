@@ -39,7 +39,7 @@ pub(crate) fn establish(rooms: &mut Rooms) -> Result<(), AdvanceError> {
         }
         // Contacts that close fast fire in their own time, unless they are in their target zone now.
         let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
-        work.region.records.retain(|record| !fast(record));
+        work.region.retain_records(|record| !fast(record));
         collide(rooms, work)
     })
 }
@@ -49,7 +49,7 @@ fn closes_slowly(assembly: &Assembly, region: &Region) -> bool {
     let closes = |record: &Collision| {
         record.motion.normal_velocity < -assembly.start_rest_of(record) && !closes_fast(record)
     };
-    let mut records = region.records.iter().filter(|record| !record.parties.bilateral);
+    let mut records = region.records().iter().filter(|record| !record.parties.bilateral);
     assembly.settings().impulse_step.is_none() && records.any(closes)
 }
 
@@ -103,7 +103,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
     match end {
         SegmentEnd::Release(row) => {
             if let Some(touch) = group.rows[row].touch() {
-                work.region.cause = Cause::Released(touch);
+                work.region.set_cause(Cause::Released(touch));
             }
             let source = group.rows[row].source;
             if group.made == rooms.assembly.now() {
@@ -118,7 +118,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
             (_, RowSource::Connector(id, _)) => pass_joint(rooms, work, id),
             (touch, RowSource::Contact(_)) => {
                 let left = touch.filter(|&touch| leaves(&rooms.assembly, &rooms.connectors, touch));
-                work.region.cause = left.map_or(Cause::Other, Cause::RunOff);
+                work.region.set_cause(left.map_or(Cause::Other, Cause::RunOff));
                 if let Some(pair) = left.and_then(|left| rooms.pairs.between(left.bodies[0], left.bodies[1]))
                 {
                     work.repeats = note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair)?
@@ -130,7 +130,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
         SegmentEnd::Sink(row) => {
             // A contact that was touched without force has sunk.
             let Some(touch) = group.idle[row].touch() else { return Ok(()) };
-            work.region.cause = Cause::Fired(touch);
+            work.region.set_cause(Cause::Fired(touch));
             handle_impact(rooms, work)
         }
         SegmentEnd::Stop(id) => meet_stop(rooms, work, id),

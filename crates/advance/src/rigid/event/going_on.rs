@@ -25,21 +25,22 @@ use halfgap_geometry::GapSample;
 /// Finds the held rows, makes groups, and predicts: the bodies of the region are in flight with their new
 /// velocities.
 pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
-    for &body in &work.region.bodies {
+    for &body in work.region.bodies() {
         rooms.assembly.flyer_mut(body).unwind();
     }
     note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now());
     // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
-    work.region.is_hasty =
-        take_haste(&mut rooms.zeno, &work.region.bodies) || has_pulled(&rooms.zeno, rooms.assembly.now());
+    let is_hasty =
+        take_haste(&mut rooms.zeno, work.region.bodies()) || has_pulled(&rooms.zeno, rooms.assembly.now());
+    work.region.set_hasty(is_hasty);
     settle_and_still(rooms, work)?;
     while leave_loose_corner(rooms, work)? {
         settle_and_still(rooms, work)?;
     }
     measure_touches(&rooms.assembly, &mut work.region);
     note_gaps(&rooms.assembly, &mut rooms.books, &work.region);
-    let touching = work.region.touches.iter().copied().zip(work.region.motions.iter().copied());
-    let fired = work.region.cause.fired().map(|touch| (touch, work.fired_open));
+    let touching = work.region.touches().iter().copied().zip(work.region.motions().iter().copied());
+    let fired = work.region.cause().fired().map(|touch| (touch, work.fired_open));
     note_seen(&rooms.assembly, &mut rooms.pairs, touching, fired);
     let outcome = regroup_soundly(rooms, work);
     note_begins(&rooms.assembly, &mut rooms.books, &work.region, &work.settling);
@@ -48,19 +49,19 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     if rooms.zeno.last_insistent().is_some_and(|last| is_same_time(last, rooms.assembly.now())) {
         lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
     }
-    for &body in &work.region.bodies {
+    for &body in work.region.bodies() {
         rooms.searching().renew_stay(body);
     }
-    rooms.searching().predict_all_of(&work.region.bodies, true);
+    rooms.searching().predict_all_of(work.region.bodies(), true);
     note_held_connectors(&mut rooms.connectors, &work.region, &work.settling);
-    rooms.searching().predict_ropes(&work.region.bodies);
+    rooms.searching().predict_ropes(work.region.bodies());
     Ok(())
 }
 
 /// Notes the least gap of features of a region that lie opposite each other: beyond their ends a gap is no distance
 /// between bodies.
 fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
-    for (&touch, &(gap, _)) in region.touches.iter().zip(&region.motions) {
+    for (&touch, &(gap, _)) in region.touches().iter().zip(region.motions()) {
         if books.counts().smallest_gap.is_some_and(|least| least <= gap) {
             continue;
         }
@@ -76,13 +77,13 @@ fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
 
 /// Notes which unilateral connectors of a region are held from now on.
 fn note_held_connectors(connectors: &mut Connectors, region: &Region, settling: &Settling) {
-    for &body in &region.bodies {
+    for &body in region.bodies() {
         for index in 0..connectors.of(body).len() {
             let id = connectors.of(body)[index];
             if !connectors.connector(id).is_bilateral() {
-                let mut held = settling.held.iter();
+                let mut held = settling.held().iter();
                 let is_held = held.any(|(_, row)| row.source == RowSource::Connector(id, 0));
-                connectors.states[id.index()].held = is_held;
+                connectors.set_held(id, is_held);
             }
         }
     }

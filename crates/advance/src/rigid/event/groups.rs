@@ -25,7 +25,7 @@ pub(crate) fn regroup(rooms: &mut Rooms, region: &Region, settling: &Settling) -
     rooms.groups.made.clear();
     let mut members = std::mem::take(&mut rooms.members);
     members.list(region, settling, |place| rooms.groups.coupled.root(place));
-    for place in 0..region.bodies.len() {
+    for place in 0..region.bodies().len() {
         if rooms.groups.integrated[place] && rooms.groups.coupled.root(place) == place {
             let group = make_group(rooms, (region, settling), &members, place);
             let leader = group.leader();
@@ -57,21 +57,21 @@ fn couple(
     region: &Region,
     settling: &Settling,
 ) {
-    let count = region.bodies.len();
+    let count = region.bodies().len();
     groups.coupled.reset(count);
     groups.integrated.clear();
     groups.integrated.resize(count, false);
-    for (_, row) in &settling.held {
+    for (_, row) in settling.held() {
         couple_bodies(groups, region, row.bodies.iter().copied());
     }
     for place in 0..count {
-        for index in 0..assembly.laws().of(region.bodies[place]).len() {
-            let law = assembly.laws().all[assembly.laws().of(region.bodies[place])[index]].clone();
+        for index in 0..assembly.laws().of(region.bodies()[place]).len() {
+            let law = assembly.laws().all[assembly.laws().of(region.bodies()[place])[index]].clone();
             couple_bodies(groups, region, law.bodies().iter().copied());
         }
     }
     for place in 0..count {
-        let mut tied = connectors.of(region.bodies[place]).iter();
+        let mut tied = connectors.of(region.bodies()[place]).iter();
         groups.integrated[place] |= tied.any(|&id| connectors.connector(id).is_stop());
     }
     couple_touching(assembly, groups, region, settling);
@@ -92,7 +92,7 @@ fn couple_touching(assembly: &Assembly, groups: &mut Groups, region: &Region, se
         return;
     }
     let rest = assembly.rest_speed();
-    for (&touch, &(_, rate)) in region.touches.iter().zip(&region.motions) {
+    for (&touch, &(_, rate)) in region.touches().iter().zip(region.motions()) {
         if rate.abs() > rest || settling.holds_touch(touch) {
             continue;
         }
@@ -117,7 +117,7 @@ fn make_group(rooms: &mut Rooms, of: (&Region, &Settling), members: &Members, ro
     let (region, settling) = of;
     let mut group = rooms.groups.pool.pop().unwrap_or_default();
     group.clear();
-    group.bodies.extend(members.places(root).map(|place| region.bodies[place]));
+    group.bodies.extend(members.places(root).map(|place| region.bodies()[place]));
     group.bodies.sort_unstable();
     // Bilateral rows first: a contact that depends on them gives way.
     let rows = members.held(settling, root);
@@ -145,7 +145,7 @@ fn list_idle(
         return;
     }
     for index in touches {
-        let (touch, (gap, rate)) = (region.touches[index], region.motions[index]);
+        let (touch, (gap, rate)) = (region.touches()[index], region.motions()[index]);
         let is_inside = |body: BodyId| group.bodies.binary_search(&body).is_ok();
         let belongs = |body: BodyId| is_inside(body) || !assembly.is_movable(body);
         if !touch.bodies.iter().all(|&body| belongs(body)) || settling.holds_touch(touch) {
@@ -177,8 +177,7 @@ pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
     let Some(mut group) = rooms.groups.take(leader) else { return };
     let opened =
         rooms.assembly.settings().tolerances.target_gap + rooms.assembly.settings().tolerances.accuracy;
-    let mut touched = std::mem::take(&mut rooms.search.touched);
-    touched.clear();
+    let mut touched = rooms.search.take_touched();
     group.idle.retain(|row| {
         let RowSource::Contact(features) = row.source else { return true };
         let touch = Touch { bodies: row.bodies, features };
@@ -210,7 +209,7 @@ pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
     for &pair in &touched {
         rooms.searching().note_prediction(pair, (Prediction::Quiet, now));
     }
-    rooms.search.touched = touched;
+    rooms.search.put_touched(touched);
 }
 
 fn list_stops(assembly: &Assembly, connectors: &Connectors, group: &mut Group) {

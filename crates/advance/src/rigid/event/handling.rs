@@ -47,7 +47,7 @@ pub(crate) fn handle(rooms: &mut Rooms, source: Source) -> Result<(), AdvanceErr
         Source::Connector(id) if rooms.searching().rope_fires(id) => return handle_rope(rooms, id),
         Source::Connector(_) => {}
         Source::Tick => return handle_tick(rooms),
-        Source::Pair(pair) => match rooms.pairs.get(pair).prediction {
+        Source::Pair(pair) => match rooms.pairs.get(pair).prediction() {
             Prediction::Contact(features) => return handle_contact(rooms, pair, features),
             _ => search_on(rooms, pair),
         },

@@ -11,7 +11,7 @@ use crate::rigid::event::settling::settle_and_still;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settle::HASTY_SHARE;
 use crate::rigid::region::records::remeasure;
-use crate::rigid::region::touching::{Region, measure_touches};
+use crate::rigid::region::touching::measure_touches;
 
 /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
 /// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
@@ -22,7 +22,7 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
         work.before.clear();
         work.before.extend(
             work.region
-                .bodies
+                .bodies()
                 .iter()
                 .map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now())),
         );
@@ -34,12 +34,17 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
             Err(_) => [false; 2],
         };
         // Each remedy is tried once.
-        let Region { is_unsound, is_hasty, .. } = &mut work.region;
-        let has_remedy = (displaces && !*is_unsound) || (drives && !*is_hasty);
+        let region = &mut work.region;
+        let has_remedy = (displaces && !region.is_unsound()) || (drives && !region.is_hasty());
         if !has_remedy {
             return outcome;
         }
-        (*is_unsound, *is_hasty) = (*is_unsound || displaces, *is_hasty || drives);
+        if displaces {
+            region.set_unsound();
+        }
+        if drives {
+            region.set_hasty(true);
+        }
         undo_groups(
             &mut rooms.assembly,
             &mut rooms.connectors,
@@ -60,17 +65,17 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
 /// body is held by two corners that are next to each other, a small way between them is a large turn, and so is a
 /// slow rate.
 fn harm_done(assembly: &Assembly, EventWork { region, settling, .. }: &EventWork) -> [bool; 2] {
-    let held = settling.held.iter().filter(|(_, row)| !row.bilateral);
+    let held = settling.held().iter().filter(|(_, row)| !row.bilateral);
     let (mut is_moved, mut opening) = (false, 0.0f64);
     for (index, row) in held {
-        let record = &region.records[*index];
+        let record = &region.records()[*index];
         is_moved |= row.gap != record.geometry.distance;
         opening = opening.max(record.motion.normal_velocity);
     }
     let is_stopped = opening > HASTY_SHARE * assembly.rest_speed();
     let mut harm = [false; 2];
     if is_moved || is_stopped {
-        for (touch, &(gap_before, rate_before)) in region.touches.iter().zip(&region.motions) {
+        for (touch, &(gap_before, rate_before)) in region.touches().iter().zip(region.motions()) {
             let (gap, rate) = gap_at(assembly, *touch, assembly.now());
             harm[0] |= is_moved && gap < gap_before - assembly.settings().tolerances.accuracy;
             harm[1] |= is_stopped && rate < rate_before.min(0.0) - opening;
@@ -103,8 +108,8 @@ mod tests {
         let mut stage = std::mem::take(&mut rooms.groups.stage);
         settling.set_likely([None].into_iter());
         settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false).expect("it rests");
-        settling.held[0].1.gap += lifted;
-        region.records[0].motion.normal_velocity = opening;
+        settling.held_mut()[0].1.gap += lifted;
+        region.records_mut()[0].motion.normal_velocity = opening;
         let mut state = rooms.assembly.flyer(disc).unwound_at(rooms.assembly.now());
         (state.position.y, state.velocity.y) = (state.position.y - sunk, -falling);
         let now = rooms.assembly.now();

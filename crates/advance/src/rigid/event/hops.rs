@@ -27,15 +27,15 @@ pub(crate) fn still_hops(
     work: &mut EventWork,
 ) -> bool {
     // At the start some contacts may be about to collide; their impacts must not be stopped along with the hops.
-    if work.region.records.iter().any(closes_fast) {
+    if work.region.records().iter().any(closes_fast) {
         return false;
     }
     let Some(wait) = time_of_hops(assembly, &work.region, &work.settling) else { return false };
     let EventWork { region, impact, settling, carried, stop, .. } = &mut *work;
     carried.clear();
-    carried.resize(region.records.len(), 0.0);
-    for &(index, _) in &settling.held {
-        let record = &region.records[index];
+    carried.resize(region.records().len(), 0.0);
+    for &(index, _) in settling.held() {
+        let record = &region.records()[index];
         carried[index] = if record.parties.bilateral { 0.0 } else { force_of(record) * wait };
     }
     set_rows(assembly, connectors, pairs, region, impact);
@@ -47,7 +47,7 @@ pub(crate) fn still_hops(
     remeasure(assembly, connectors, region, assembly.now());
     book_impact(assembly, books, stop, Booking::Capture);
     settling.let_leave(|index| {
-        let record = &region.records[index];
+        let record = &region.records()[index];
         opens(assembly, record) && !stays_in_corner(connectors, record)
     });
     true

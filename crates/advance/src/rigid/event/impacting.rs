@@ -17,16 +17,16 @@ use crate::rigid::zeno::pace::forget_paces;
 use crate::rigid::zeno::storms::note_events;
 
 pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
-    let fired = work.region.cause.fired();
+    let fired = work.region.cause().fired();
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
-    if !work.region.groups.is_empty() {
+    if !work.region.groups().is_empty() {
         cut_groups(rooms, &mut work.region);
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     }
     let rest = rooms.assembly.rest_speed();
     work.fired_open =
         fired.is_some_and(|fired| gap_at(&rooms.assembly, fired, rooms.assembly.now()).1 > -rest);
-    if work.region.cause == Cause::Tick {
+    if work.region.cause() == Cause::Tick {
         put_back(rooms, work);
     }
     collide(rooms, work)
@@ -35,14 +35,15 @@ pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
 /// Resolves the impact of a region whose bodies are in flight, and goes on.
 pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     // One event too many in a short time, or of one pair without time going by, is resolved without elasticity.
-    work.region.in_storm = {
-        let of = (work.region.bodies.as_slice(), work.region.records.as_slice());
+    let in_storm = {
+        let of = (work.region.bodies(), work.region.records());
         note_events(&rooms.assembly, &mut rooms.zeno, &mut rooms.books, of)
     };
-    let is_storm = work.region.in_storm || work.repeats > 0;
+    work.region.set_in_storm(in_storm);
+    let is_storm = work.region.in_storm() || work.repeats > 0;
     let mut report = rooms.books.take_report();
     let now = rooms.assembly.now();
-    let is_lawful = !is_storm && work.region.cause != Cause::Tick;
+    let is_lawful = !is_storm && work.region.cause() != Cause::Tick;
     let manner = if is_lawful { Manner::Lawful(rooms.books.counts().impacts) } else { Manner::Inelastic };
     let outcome = resolve_impact(rooms, &mut work.region, &mut work.impact, &mut report, now, manner);
     if outcome.is_ok() {
@@ -56,14 +57,14 @@ pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Adv
     rooms.books.put_report(report);
     outcome?;
     // A row that comes to rest without having closed is a contact that begins, not an impact.
-    let at_joint = work.region.cause == Cause::SmoothJoint;
+    let at_joint = work.region.cause() == Cause::SmoothJoint;
     let fastest = fastest_row(rooms.books.told().last_impact(), !at_joint);
     if fastest > rooms.assembly.rest_speed() {
         rooms.books.note_impact();
     }
     // Slower impacts may be of contacts that take turns.
     if fastest > rooms.assembly.settings().tolerances.velocity_tol {
-        forget_paces(&mut rooms.zeno, &work.region.bodies);
+        forget_paces(&mut rooms.zeno, work.region.bodies());
     }
     remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     go_on(rooms, work)
@@ -73,9 +74,9 @@ pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Adv
 /// together; others may have come in, and are cut, too.
 pub(crate) fn collect_again(rooms: &mut Rooms, work: &mut EventWork) {
     work.seeds.clear();
-    work.seeds.extend(&work.region.bodies);
+    work.seeds.extend(work.region.bodies());
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
-    if !work.region.groups.is_empty() {
+    if !work.region.groups().is_empty() {
         cut_groups(rooms, &mut work.region);
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     }

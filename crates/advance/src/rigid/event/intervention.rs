@@ -11,7 +11,6 @@ use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::parts::{FINITE, keep_to};
 use crate::rigid::region::collecting::collect_region;
-use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::pace::forget_paces;
 use crate::time::Time;
@@ -40,7 +39,7 @@ pub(crate) fn change_velocities(
             change_velocity(&mut rooms.assembly, &mut rooms.books, change);
         }
     }
-    forget_past(&mut rooms.pairs, &mut rooms.search, &mut rooms.zeno, work);
+    forget_past(&mut rooms.pairs, &mut rooms.zeno, work);
     // Velocities decide which contacts take part, and they have changed.
     collect_again(rooms, work);
     collide(rooms, work)
@@ -86,18 +85,12 @@ fn work_of(assembly: &Assembly, body: BodyId, before: &BodyState, change: &Veloc
 
 /// Forgets the past events of a region's bodies: impacts that follow are neither a storm nor bounces that have
 /// become low.
-fn forget_past(pairs: &mut Pairs, search: &mut Neighbourhood, zeno: &mut Zeno, work: &EventWork) {
-    for &body in &work.region.bodies {
+fn forget_past(pairs: &mut Pairs, zeno: &mut Zeno, work: &EventWork) {
+    for &body in work.region.bodies() {
         zeno.forget_events(body);
-        let mut links = std::mem::take(&mut search.links);
-        links.clear();
-        links.extend_from_slice(pairs.of_body(body));
-        for link in &links {
-            pairs.seen_mut(link.pair).clear();
-        }
-        search.links = links;
+        pairs.forget_seen_of(body);
     }
-    forget_paces(zeno, &work.region.bodies);
+    forget_paces(zeno, work.region.bodies());
 }
 
 /// A change of the velocities of a body. A zero change restarts the body's group, which makes changed force laws take

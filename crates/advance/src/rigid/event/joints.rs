@@ -17,14 +17,14 @@ pub(crate) fn pass_joint(
 ) -> Result<(), AdvanceError> {
     // A point that meets the stop again at once rests there, in the corner, which holds it as well.
     if let Some(stop) = stop_in_corner(&rooms.assembly, &rooms.connectors, id)
-        && rooms.connectors.states[stop.index()].repeats_at(rooms.assembly.now()) < MOST_AGAIN
+        && rooms.connectors.states()[stop.index()].repeats_at(rooms.assembly.now()) < MOST_AGAIN
     {
         return meet_stop(rooms, work, stop);
     }
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
     let is_corner = rooms.connectors.pass_knot(&rooms.assembly, id, rooms.assembly.now())
-        | pass_joints_beside(&rooms.assembly, &mut rooms.connectors, &work.region.bodies, id);
-    work.region.cause = if is_corner { Cause::Other } else { Cause::SmoothJoint };
+        | pass_joints_beside(&rooms.assembly, &mut rooms.connectors, work.region.bodies(), id);
+    work.region.set_cause(if is_corner { Cause::Other } else { Cause::SmoothJoint });
     handle_impact(rooms, work)
 }
 
@@ -34,9 +34,9 @@ pub(crate) fn meet_stop(
     work: &mut EventWork,
     id: ConnectorId,
 ) -> Result<(), AdvanceError> {
-    work.region.cause = Cause::Taut(id);
+    work.region.set_cause(Cause::Taut(id));
     if rooms.connectors.connector(id).is_stop() {
-        rooms.connectors.states[id.index()].note_taut(rooms.assembly.now());
+        rooms.connectors.note_taut(id, rooms.assembly.now());
     }
     handle_impact(rooms, work)
 }

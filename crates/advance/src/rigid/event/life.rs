@@ -69,7 +69,7 @@ pub(crate) fn undo_groups(
     before: &[BodyState],
 ) {
     complete_dense(assembly, connectors, groups);
-    for (&body, &state) in region.bodies.iter().zip(before) {
+    for (&body, &state) in region.bodies().iter().zip(before) {
         if let Some(leader) = assembly.leader_of()[body.index()] {
             agenda.clear(Source::Group(leader));
             drop_group(assembly, connectors, groups, leader);
@@ -256,7 +256,7 @@ pub(crate) fn is_unwatched(
 ) -> bool {
     let mechanism = mechanism(assembly, connectors);
     let mut tied = group.bodies.iter().flat_map(|&body| connectors.of(body));
-    group.bodies.iter().all(|body| search.loners[body.index()])
+    group.bodies.iter().all(|body| search.loners()[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
         && group.rows.iter().all(|row| row.bilateral && !mechanism.can_change(row))
         && group.laws.iter().all(|&law| assembly.laws().all[law].switches() == 0)

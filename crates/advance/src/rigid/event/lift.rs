@@ -5,10 +5,10 @@ use crate::rigid::bodies::law::Snapshot;
 use crate::rigid::books::energy::book_damping;
 use crate::rigid::event::cutting::cut_groups;
 use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::shift::Lift;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::region::collecting::collect_region;
-use crate::rigid::region::lift::Lift;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::sinking::depth::Sinking;
@@ -21,7 +21,7 @@ pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
     let (mut full, mut short) = (0, 0);
     while full < ROUNDS && short < SHORT_ROUNDS {
         let now = rooms.assembly.now();
-        for &body in &work.region.bodies {
+        for &body in work.region.bodies() {
             book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
         }
         let before = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
@@ -29,18 +29,18 @@ pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
         *(if share == 1.0 { &mut full } else { &mut short }) += 1;
         let after = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
         rooms.books.book_projection(after - before);
-        for &body in &work.region.bodies {
-            rooms.search.lanes[body.index()].follow(rooms.assembly.flyer(body));
+        for &body in work.region.bodies() {
+            rooms.search.follow(rooms.assembly.flyer(body), body);
         }
         work.seeds.clear();
-        work.seeds.extend(&work.region.bodies);
+        work.seeds.extend(work.region.bodies());
         collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
         cut_groups(rooms, &mut work.region);
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     }
     rooms.sinking.end_moves();
     // Touching contacts may yet sink when connectors are put together again afterwards.
-    for &touch in &work.region.touches {
+    for &touch in work.region.touches() {
         rooms.sinking.wait(touch);
     }
 }
@@ -53,12 +53,12 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
     }
     let Lift { shifts, rows, .. } = lift;
     shifts.clear();
-    shifts.resize(region.bodies.len(), [0.0; 3]);
+    shifts.resize(region.bodies().len(), [0.0; 3]);
     settling.add_responses(region, rows, |body| assembly.inertia(body), shifts);
     let longest = longest_way(assembly, region, shifts);
     let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
     sinking.note_move(share * longest.0);
-    for (&body, &[x, y, turn]) in region.bodies.iter().zip(shifts.iter()) {
+    for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts.iter()) {
         let state = assembly.flyer(body).unwound_at(assembly.now());
         let position = state.position + share * DVec2::new(x, y);
         let moved = BodyState { position, angle: state.angle + share * turn, ..state };
@@ -71,7 +71,7 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
 /// Longest way of a point of a region's bodies along a displacement (x, y, angle) of each: in metres, and as a
 /// fraction of the body's reach.
 fn longest_way(assembly: &Assembly, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
-    let ways = region.bodies.iter().zip(shifts).map(|(&body, [x, y, turn])| {
+    let ways = region.bodies().iter().zip(shifts).map(|(&body, [x, y, turn])| {
         let reach = assembly.flyer(body).reach();
         let way = libm::hypot(*x, *y) + turn.abs() * reach;
         (way, way / reach)
@@ -84,7 +84,7 @@ fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &
     region.begin(problem, |body| assembly.inertia(body));
     rows.clear();
     let mut any_sunk = false;
-    for (index, record) in region.records.iter().enumerate() {
+    for (index, record) in region.records().iter().enumerate() {
         let target = if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
         let offset = record.geometry.distance - target;
         any_sunk |= offset < 0.0 && !record.parties.bilateral;
@@ -98,14 +98,14 @@ fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &
 /// Potential energy [J] of the bodies of a region under uniform accelerations and laws that have a potential.
 fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking, region: &Region) -> f64 {
     let mut energy = 0.0;
-    for &body in &region.bodies {
+    for &body in region.bodies() {
         groups.stage.movings[body.index()] = assembly.flyer(body).moving_at(assembly.now());
         let flyer = assembly.flyer(body);
         let position = groups.stage.movings[body.index()].pose.position;
         energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
     }
     let mut laws = sinking.take_laws();
-    assembly.laws().list(&region.bodies, &mut laws);
+    assembly.laws().list(region.bodies(), &mut laws);
     let now = Snapshot::of_unwound(assembly.now().seconds(), &groups.stage.movings, assembly.flyers());
     let of_laws = laws.iter().filter_map(|&law| assembly.laws().all[law].potential(&now)).sum::<f64>();
     sinking.put_laws(laws);

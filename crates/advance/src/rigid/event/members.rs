@@ -26,17 +26,17 @@ impl Members {
         mut root: impl FnMut(usize) -> usize,
     ) {
         self.places.clear();
-        self.places.extend((0..region.bodies.len()).map(|place| (root(place), place)));
+        self.places.extend((0..region.bodies().len()).map(|place| (root(place), place)));
         let places = &self.places;
         // A row or touch belongs to the group of the first of its bodies that moves.
         let root_of = |bodies: [BodyId; 2]| {
             bodies.into_iter().find_map(|body| region.place(body)).map(|place| places[place].0)
         };
         self.held.clear();
-        let held = settling.held.iter().enumerate();
+        let held = settling.held().iter().enumerate();
         self.held.extend(held.filter_map(|(index, (_, row))| Some((root_of(row.bodies)?, index))));
         self.touches.clear();
-        let touches = region.touches.iter().enumerate();
+        let touches = region.touches().iter().enumerate();
         self.touches.extend(touches.filter_map(|(index, touch)| Some((root_of(touch.bodies)?, index))));
         for list in [&mut self.places, &mut self.held, &mut self.touches] {
             list.sort_unstable();
@@ -50,7 +50,7 @@ impl Members {
 
     /// The held rows of a group.
     pub(super) fn held(&self, settling: &Settling, root: usize) -> impl Iterator<Item = HeldRow> + Clone {
-        of_root(&self.held, root).map(|index| settling.held[index].1)
+        of_root(&self.held, root).map(|index| settling.held()[index].1)
     }
 
     /// Indices of the touches of a group's bodies.

@@ -27,6 +27,7 @@ pub(super) mod rooms;
 pub(super) mod rules;
 pub(super) mod search_on;
 pub(super) mod settling;
+pub(super) mod shift;
 pub(super) mod telling;
 pub(super) mod ticks;
 pub(super) mod with_work;

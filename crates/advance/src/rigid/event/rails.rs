@@ -23,29 +23,28 @@ pub(crate) fn note_ways(
         connectors.note_left(assembly, id, assembly.now());
         if let Some(group) = groups.by_leader[leader.index()].as_deref_mut() {
             group.stops[place].is_noted = true;
-            connectors.states[id.index()].follow = None;
+            connectors.stop_following(id);
         }
     }
 }
 
 /// Notes the places on their rails of the points of a region's connectors.
 pub(crate) fn note_rails(assembly: &Assembly, connectors: &mut Connectors, region: &Region, time: Time) {
-    for &body in &region.bodies {
+    for &body in region.bodies() {
         for index in 0..connectors.of(body).len() {
             let id = connectors.of(body)[index];
             let Some(path) = connectors.connector(id).path() else { continue };
-            let state = &connectors.states[id.index()];
-            if state.corner.is_some() {
+            let state = &connectors.states()[id.index()];
+            if state.corner().is_some() {
                 continue;
             }
             let point = connectors.point_on_rail(assembly, id, time);
-            let hint = path.hint_near(point, state.hint.as_ref());
+            let hint = path.hint_near(point, state.hint().as_ref());
             // A stop may lie on any piece: its hint must follow its point over the joints before it.
             if !connectors.connector(id).is_stop() {
                 connectors.set_hint(id, hint.staying());
             } else if !connectors.is_led(id) {
-                let left = connectors.states[id.index()].hint.and_then(|hint| hint.before_stop());
-                connectors.states[id.index()].hint = Some(hint.with_before_stop(left));
+                connectors.set_stop_hint(id, hint);
             }
         }
         for index in 0..connectors.of(body).len() {
@@ -68,7 +67,7 @@ pub(crate) fn renew_hints(assembly: &Assembly, connectors: &mut Connectors, grou
     };
     for stop in stops {
         stop.is_noted = false;
-        let left = connectors.states[stop.id.index()].hint.and_then(|hint| hint.before_stop());
+        let left = connectors.states()[stop.id.index()].hint().and_then(|hint| hint.before_stop());
         // Ropes that are watched like stops have no hints.
         let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_before_stop(left));
         stop.hint = hint.map(|hint| if connectors.is_led(stop.id) { hint.staying() } else { hint });

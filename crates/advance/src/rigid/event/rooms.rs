@@ -54,7 +54,7 @@ impl Rooms {
         let connectors = Connectors::new(connectors, count);
         Self {
             books,
-            agenda: Agenda::new(count, connectors.all.len()),
+            agenda: Agenda::new(count, connectors.all().len()),
             connectors,
             pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
             search: Neighbourhood::new(&flyers, excluded, &settings),

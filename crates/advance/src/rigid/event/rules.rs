@@ -47,7 +47,7 @@ pub(crate) fn set_rules(
     take_rules(assembly, pairs, search, region);
     let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
     set_halos(assembly, search, region);
-    for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+    for (touch, &(gap, rate)) in region.touches().iter().zip(region.motions()) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
         let is_held = settling.holds_touch(*touch);
         let rule: FeatureRule = if is_held || is_watched(assembly, groups, *touch) {
@@ -77,13 +77,13 @@ pub(crate) fn set_rules(
 /// Drops the rules of the bodies of a region, and puts aside those of contacts that lie deep.
 fn take_rules(assembly: &Assembly, pairs: &mut Pairs, search: &mut Neighbourhood, region: &Region) {
     let deepest = deepest(assembly);
-    search.deep.clear();
-    for &body in &region.bodies {
+    search.clear_deep();
+    for &body in region.bodies() {
         let near = pairs.of_body(body).iter().map(|link| link.pair);
-        for pair in near.filter(|&pair| pairs.get(pair).has_rules) {
+        for pair in near.filter(|&pair| pairs.get(pair).has_rules()) {
             let targets = pairs.rules(pair).iter().filter_map(|rule| Some((rule.features, rule.target?)));
             let deep = targets.filter(|(_, target)| *target < deepest);
-            search.deep.extend(deep.map(|(features, target)| (pair, features, target)));
+            deep.for_each(|(features, target)| search.put_deep(pair, features, target));
         }
         pairs.clear_rules_of(body);
     }
@@ -93,8 +93,8 @@ fn take_rules(assembly: &Assembly, pairs: &mut Pairs, search: &mut Neighbourhood
 /// bodies, but goes on to do so until it is out.
 fn give_back_deep(assembly: &Assembly, pairs: &mut Pairs, search: &Neighbourhood) {
     let deepest = deepest(assembly);
-    for index in 0..search.deep.len() {
-        let (pair, features, told) = search.deep[index];
+    for index in 0..search.deep().len() {
+        let (pair, features, told) = search.deep()[index];
         let touch = Touch { bodies: pairs.bodies(pair), features };
         let (gap, rate) = gap_at(assembly, touch, assembly.now());
         // A contact that lies deeper by far has gone round its body.
@@ -139,9 +139,9 @@ pub(crate) fn lower_insistent(
     search: &mut Neighbourhood,
     region: &Region,
 ) {
-    let mut insistent = std::mem::take(&mut search.touched);
-    insistent.clear();
-    let touching = region.touches.iter().filter_map(|touch| pairs.between(touch.bodies[0], touch.bodies[1]));
+    let mut insistent = search.take_touched();
+    let touching =
+        region.touches().iter().filter_map(|touch| pairs.between(touch.bodies[0], touch.bodies[1]));
     insistent.extend(touching);
     insistent.sort_unstable();
     insistent.dedup();
@@ -157,17 +157,18 @@ pub(crate) fn lower_insistent(
         });
         // The halo of a body that cannot move would never be raised again: it is in no region.
         for body in pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
-            search.lanes[body.index()].halo -= lower;
+            let halo = search.lanes()[body.index()].halo();
+            search.set_halo(body, halo - lower);
         }
     }
-    search.touched = insistent;
+    search.put_touched(insistent);
 }
 
 /// True if a rule for two discs says only what holds without it.
 fn is_idle(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, rule: &FeatureRule) -> bool {
     let target = assembly.settings().tolerances.target_gap;
-    let mut lanes = touch.bodies.iter().map(|body| &search.lanes[body.index()]);
-    rule.target == Some(target) && lanes.all(|lane| lane.radius > 0.0 && lane.halo == target)
+    let mut lanes = touch.bodies.iter().map(|body| &search.lanes()[body.index()]);
+    rule.target == Some(target) && lanes.all(|lane| lane.radius() > 0.0 && lane.halo() == target)
 }
 
 /// Sets the gap at which each body of a region fires: its target, or a little less than the gap of a contact that
@@ -176,18 +177,18 @@ fn is_idle(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, rule: &Fe
 /// So a body that slides along at less than its target does not run against the seam of the next floor.
 fn set_halos(assembly: &Assembly, search: &mut Neighbourhood, region: &Region) {
     let target = assembly.settings().tolerances.target_gap;
-    for &body in &region.bodies {
-        search.lanes[body.index()].halo = target;
+    for &body in region.bodies() {
+        search.set_halo(body, target);
     }
     let seam = SEAM_SHARE * assembly.settings().tolerances.accuracy;
     let least = target - assembly.settings().tolerances.accuracy;
-    for (touch, &(gap, rate)) in region.touches.iter().zip(&region.motions) {
+    for (touch, &(gap, rate)) in region.touches().iter().zip(region.motions()) {
         if rate > assembly.rest_speed() {
             continue;
         }
         for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
-            let halo = &mut search.lanes[body.index()].halo;
-            *halo = halo.min((gap - seam).max(least));
+            let halo = search.lanes()[body.index()].halo();
+            search.set_halo(body, halo.min((gap - seam).max(least)));
         }
     }
 }
@@ -211,7 +212,7 @@ mod tests {
         let target = rooms.assembly.settings().tolerances.target_gap;
         let mut work = EventWork::default();
         collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
-        let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
+        let [touch] = work.region.touches()[..] else { panic!("one disc, one contact") };
         dissolve(&mut rooms, BodyId(1));
         for (depth, expected) in [(-1.0, target), (0.4, target), (0.9, -0.9 * target)] {
             let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now());
@@ -231,11 +232,11 @@ mod tests {
         let target = rooms.assembly.settings().tolerances.target_gap;
         let mut work = EventWork::default();
         collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
-        let [touch] = work.region.touches[..] else { panic!("one disc, one contact") };
+        let [touch] = work.region.touches()[..] else { panic!("one disc, one contact") };
         let pair = rooms.pairs.between(BodyId(0), BodyId(1)).expect("they touch");
         dissolve(&mut rooms, BodyId(1));
         // An event that does not see the contact.
-        work.region.touches.clear();
+        work.region.forget_touches();
         let told = [target, -0.9 * target].map(|target| touch.lowered_to(target));
         for (rule, gap, is_kept) in [(0, -0.9, false), (1, -0.8, true), (1, -0.1, false), (1, -2.0, false)] {
             let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now());
@@ -257,7 +258,7 @@ mod tests {
     fn a_floor_on_which_a_contact_insists_fires_elsewhere_as_before() {
         let mut rooms = resting_discs(&[0.0]);
         let [floor, disc] = [BodyId(0), BodyId(1)];
-        let before = rooms.search.lanes[floor.index()].halo;
+        let before = rooms.search.lanes()[floor.index()].halo();
         let pair = rooms.pairs.between(floor, disc).expect("they touch");
         for _ in 0..CALM_REPEATS + 5 {
             note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair).expect("not stuck yet");
@@ -267,7 +268,7 @@ mod tests {
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
         measure_touches(&rooms.assembly, &mut work.region);
         lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
-        assert!(rooms.search.lanes[disc.index()].halo < before);
-        assert_eq!(rooms.search.lanes[floor.index()].halo, before);
+        assert!(rooms.search.lanes()[disc.index()].halo() < before);
+        assert_eq!(rooms.search.lanes()[floor.index()].halo(), before);
     }
 }

@@ -16,9 +16,9 @@ const HOP_ROUNDS: u32 = 4;
 /// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.
 pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     let EventWork { region, settling, .. } = &mut *work;
-    settling.set_likely(region.records.iter().map(|record| is_likely(&rooms.pairs, record)));
+    settling.set_likely(region.records().iter().map(|record| is_likely(&rooms.pairs, record)));
     settling.expect_forces(region, &rooms.books.told().changes().end);
-    let may_hop = work.region.cause != Cause::Start && !work.region.is_hasty;
+    let may_hop = work.region.cause() != Cause::Start && !work.region.is_hasty();
     settle_region(rooms, work, may_hop)?;
     for round in 1..=HOP_ROUNDS {
         if !any_held_hops(&rooms.assembly, &work.region, &work.settling) {
@@ -34,7 +34,7 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
 
 fn settle_region(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
     let mut stage = std::mem::take(&mut rooms.groups.stage);
-    work.settling.has_pulled = has_pulled(&rooms.zeno, rooms.assembly.now());
+    work.settling.note_pull(has_pulled(&rooms.zeno, rooms.assembly.now()));
     let outcome = settle(
         &rooms.view(),
         &mut work.region,

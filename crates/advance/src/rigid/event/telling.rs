@@ -10,10 +10,10 @@ use halfgap_collision::Collision;
 
 /// Notes the unilateral rows that are held from now on.
 pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Region, settling: &Settling) {
-    for (index, row) in settling.held.iter().filter(|(_, row)| !row.bilateral) {
+    for (index, row) in settling.held().iter().filter(|(_, row)| !row.bilateral) {
         let told = RowForce {
             bouncing: bouncing(assembly, books, region, settling),
-            ..told_of(&region.records[*index], row)
+            ..told_of(&region.records()[*index], row)
         };
         books.begin_contact(told);
     }
@@ -24,7 +24,7 @@ pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Regio
 ///
 /// After an impact at the speed v each flight lasts 2 v/a, and v falls by e each time: 2 e v/(a (1 - e)) in all.
 fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Settling) -> Option<f64> {
-    let ([record], Some(acceleration)) = (region.records.as_slice(), settling.closing_acceleration()) else {
+    let ([record], Some(acceleration)) = (region.records(), settling.closing_acceleration()) else {
         return None;
     };
     let impact = books

@@ -11,9 +11,10 @@ pub(crate) fn with_work<T>(
     act: impl FnOnce(&mut Rooms, &mut EventWork) -> T,
 ) -> T {
     let mut work = rooms.work.take().unwrap_or_default();
-    work.region.cause = cause;
+    work.region.set_cause(cause);
     let outcome = act(rooms, &mut work);
-    (work.region.cause, work.region.in_storm) = (Cause::Other, false);
+    work.region.set_cause(Cause::Other);
+    work.region.set_in_storm(false);
     (work.repeats, work.fired_open) = (0, false);
     rooms.work = Some(work);
     outcome

@@ -1,8 +1,8 @@
 //! The buffers of an event.
 
 use crate::rigid::books::report::ImpactReport;
+use crate::rigid::event::shift::Lift;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::region::lift::Lift;
 use crate::rigid::region::touching::Region;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_contact::Impact;

@@ -98,9 +98,7 @@ pub(crate) fn put_group(
     let shared = Shared { end: group.end(), depth: group.depth(), largest_error: group.largest_error };
     assembly.share(leader, shared);
     for stop in &group.stops {
-        let state = &mut connectors.states[stop.id.index()];
-        state.is_watched = true;
-        state.follow = stop.hint.filter(|_| !stop.is_noted).map(|hint| (group.start, hint));
+        connectors.watch(stop, group.start);
     }
     groups.by_leader[leader.index()] = Some(group);
 }

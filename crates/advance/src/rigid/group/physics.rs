@@ -40,5 +40,5 @@ impl<'a> Physics<'a> {
 
 /// The parts of the system from which the motion of groups is computed.
 pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Physics<'a> {
-    Physics::of(assembly.flyers(), &connectors.all, &assembly.laws().all, assembly.settings())
+    Physics::of(assembly.flyers(), connectors.all(), &assembly.laws().all, assembly.settings())
 }

@@ -27,7 +27,7 @@ const HOPS_IN_TURN: f64 = 10.0;
 /// no faster than `velocity_tol`: a faster one bounces visibly, and is stopped when it lands.
 pub(crate) fn may_hop(assembly: &Assembly, region: &Region, record: &Collision) -> bool {
     let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
-    opens(assembly, record) && (region.records.len() > 1 || is_slow)
+    opens(assembly, record) && (region.records().len() > 1 || is_slow)
 }
 
 /// True if a contact that opens closes again before its gap has grown by much; `acceleration` [m/s^2] is that of
@@ -66,13 +66,13 @@ pub(crate) fn opens(assembly: &Assembly, record: &Collision) -> bool {
 
 /// True if any held contact opens.
 pub(crate) fn any_held_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> bool {
-    let records = &region.records;
+    let records = region.records();
     settling.held.iter().any(|&(index, _)| opens(assembly, &records[index]))
 }
 
 /// Time [s] until all held contacts that hop are at rest; `None` if no contact that opens makes a low hop.
 pub(crate) fn time_of_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> Option<f64> {
-    let records = &region.records;
+    let records = region.records();
     let held = settling.held.iter().map(|&(index, _)| &records[index]);
     let times = held.filter(|record| opens(assembly, record)).filter_map(|record| {
         let rate = record.motion.normal_velocity;
@@ -105,7 +105,7 @@ mod tests {
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(1));
         collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
-        let [record] = &mut work.region.records[..] else { panic!("one disc, one contact") };
+        let [record] = work.region.records_mut() else { panic!("one disc, one contact") };
         // The disc lands after 1 ms.
         record.motion.normal_velocity = 5e-4 * GRAVITY;
         for (accuracy, slide, is_low) in

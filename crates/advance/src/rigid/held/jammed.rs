@@ -11,12 +11,13 @@ use crate::rigid::region::touching::Region;
 /// forces anyway.
 pub(crate) fn is_jammed(assembly: &Assembly, region: &Region, settling: &Settling, stage: &Stage) -> bool {
     let forces = settling.candidates.iter().zip(&settling.solution.force);
-    let of_contacts = forces.filter(|&(&index, _)| !region.records[index].parties.bilateral);
+    let of_contacts = forces.filter(|&(&index, _)| !region.records()[index].parties.bilateral);
     is_jam(assembly, region, stage, of_contacts.fold(0.0, |most, (_, force)| most.max(force.abs())))
 }
 
 /// True if a largest contact force [N] is that of a jam.
 pub(crate) fn is_jam(assembly: &Assembly, region: &Region, stage: &Stage, largest: f64) -> bool {
-    let loads = region.bodies.iter().zip(&stage.accelerations).map(|(&body, a)| assembly.flyer(body).load(a));
+    let loads =
+        region.bodies().iter().zip(&stage.accelerations).map(|(&body, a)| assembly.flyer(body).load(a));
     largest > JAM * loads.sum::<f64>()
 }

@@ -29,7 +29,7 @@ pub(crate) fn drop_leaving(
 ) -> bool {
     let before = settling.candidates.len();
     settling.candidates.retain(|&index| {
-        let record = &region.records[index];
+        let record = &region.records()[index];
         !leaves_at_once(assembly, connectors, record, |body| stage.movings[body.index()])
     });
     settling.candidates.len() < before
@@ -37,7 +37,7 @@ pub(crate) fn drop_leaving(
 
 /// Leaves out the records of a region that run off their features while they slide by `accuracy`.
 pub(crate) fn retain_staying(assembly: &Assembly, connectors: &Connectors, region: &mut Region) {
-    region.records.retain(|record| {
+    region.retain_records(|record| {
         !leaves_at_once(assembly, connectors, record, |body| assembly.moving_at(body, assembly.now()))
     });
 }

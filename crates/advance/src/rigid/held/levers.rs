@@ -24,7 +24,7 @@ impl Levers {
     /// Builds the basis from the connectors of a region.
     pub(crate) fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> InverseInertia) {
         self.basis.clear();
-        for record in region.records.iter().filter(|record| record.parties.bilateral) {
+        for record in region.records().iter().filter(|record| record.parties.bilateral) {
             if self.left_of(region, record, &inertia) > DEPENDENT {
                 let square: f64 = self.row.iter().map(|entry| entry * entry).sum();
                 self.basis.extend(self.row.iter().map(|entry| entry / square.sqrt()));
@@ -42,7 +42,7 @@ impl Levers {
     ) -> f64 {
         let Self { basis, row } = self;
         row.clear();
-        row.resize(3 * region.bodies.len(), 0.0);
+        row.resize(3 * region.bodies().len(), 0.0);
         let j = &record.motion.kinematics.jacobian;
         for (side, body) in record.bodies().into_iter().enumerate() {
             let Some(place) = region.place(body) else { continue };

@@ -22,7 +22,7 @@ pub(crate) fn let_pass(
     let Settling { candidates, passing, levers, .. } = settling;
     levers.load(region, |body| assembly.inertia(body));
     candidates.retain(|&index| {
-        let record = &region.records[index];
+        let record = &region.records()[index];
         let bodies = record.bodies();
         let passes = !record.parties.bilateral
             && record.geometry.distance > grazing_gap(assembly, bodies)

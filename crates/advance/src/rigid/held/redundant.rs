@@ -76,7 +76,7 @@ impl Rows {
             }
             spared.sort_unstable();
             for &row in &*spared {
-                region.records[candidates[row]].response.force = Some(0.0);
+                region.set_force(candidates[row], 0.0);
             }
             drop_rows(candidates, spared);
             drop_rows(sides, spared);
@@ -85,7 +85,7 @@ impl Rows {
             drop_rows(bilateral, spared);
         }
         for (&index, &force) in candidates.iter().zip(&self.forces) {
-            region.records[index].response.force = Some(force);
+            region.set_force(index, force);
         }
     }
 }

@@ -76,20 +76,20 @@ pub(crate) fn settle(
     settling.touches.clear();
     settling.passing.clear();
     settling.candidates.clear();
-    let is_start = region.cause == Cause::Start;
+    let is_start = region.cause() == Cause::Start;
     settling.is_start = is_start;
-    let rest = match (is_start, region.in_storm) {
+    let rest = match (is_start, region.in_storm()) {
         (true, _) => view.assembly.start_rest(),
         (false, true) => view.assembly.storm_rest(),
         (false, false) => view.assembly.rest_speed(),
     };
-    let share = if region.is_hasty { HASTY_SHARE } else { 1.0 };
+    let share = if region.is_hasty() { HASTY_SHARE } else { 1.0 };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
         let is_slow = (-rest..=share * rest).contains(&record.motion.normal_velocity);
         record.parties.bilateral || (holds(view.assembly, record) && is_slow)
     };
-    let records = || region.records.iter().enumerate();
+    let records = || region.records().iter().enumerate();
     settling.candidates.extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
     let may_hop =
         |settling: &Settling| records().any(|record| could_hop(view.assembly, region, settling, record));
@@ -109,7 +109,7 @@ pub(crate) fn settle(
     while drop_idle(view.assembly, view.pairs, region, settling, stage) {
         solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
     }
-    if region.is_unsound || (!is_start && (settling.is_shared() || settling.has_pulled)) {
+    if region.is_unsound() || (!is_start && (settling.is_shared() || settling.has_pulled)) {
         spare_nearly_redundant(view.assembly, region, settling);
     }
     if is_start || settling.has_pulled {
@@ -164,9 +164,9 @@ fn solve_candidates(
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.
         let velocity = |body: BodyId| assembly.moving_at(body, time).velocity;
         let is_free = |body: BodyId| assembly.is_movable(body);
-        let drifts = region.records.iter().flat_map(Collision::bodies).all(is_free);
-        let frame = region.bodies.first().filter(|_| drifts).map_or(DVec2::ZERO, |&body| velocity(body));
-        let speeds = region.bodies.iter().map(|&body| (velocity(body) - frame).length());
+        let drifts = region.records().iter().flat_map(Collision::bodies).all(is_free);
+        let frame = region.bodies().first().filter(|_| drifts).map_or(DVec2::ZERO, |&body| velocity(body));
+        let speeds = region.bodies().iter().map(|&body| (velocity(body) - frame).length());
         let fastest = speeds.fold(rest, f64::max);
         if scale > 2.0 * rest * fastest / assembly.settings().steps.length {
             return Err(settle_error(assembly, region, settling, time, source));
@@ -179,13 +179,13 @@ fn solve_candidates(
 
 /// Adds the contacts that open in no more than a low hop under the forces of the candidates; true if there are any.
 fn add_hops(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
-    let mut records = region.records.iter().enumerate();
+    let mut records = region.records().iter().enumerate();
     if !records.any(|record| could_hop(assembly, region, settling, record)) {
         return false;
     }
     push_bodies(assembly, region, settling, stage);
     let before = settling.candidates.len();
-    for (index, record) in region.records.iter().enumerate() {
+    for (index, record) in region.records().iter().enumerate() {
         if !could_hop(assembly, region, settling, (index, record)) {
             continue;
         }
@@ -227,7 +227,7 @@ pub(crate) fn accelerations_of(
     records: [usize; 2],
 ) -> [f64; 2] {
     push_bodies(assembly, region, settling, &groups.stage);
-    records.map(|record| offset_under(region, &region.records[record], &settling.pushed))
+    records.map(|record| offset_under(region, &region.records()[record], &settling.pushed))
 }
 
 /// True if a unilateral row may carry a force: connectors always do.
@@ -239,7 +239,7 @@ pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
 /// with little room touches at most one of them.
 fn drop_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
     let Settling { candidates, dropped, .. } = settling;
-    let may_stay = |index: &usize| is_close(assembly, &region.records[*index]);
+    let may_stay = |index: &usize| is_close(assembly, &region.records()[*index]);
     dropped.clear();
     dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
     candidates.retain(may_stay);
@@ -261,7 +261,7 @@ fn take_back_pressed(assembly: &Assembly, region: &Region, settling: &mut Settli
     let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
     let pushed = std::mem::take(&mut settling.pushed);
     let is_pressed =
-        |index: usize| offset_under(region, &region.records[index], &pushed) < -SMALL_CONTRADICTION * scale;
+        |index: usize| offset_under(region, &region.records()[index], &pushed) < -SMALL_CONTRADICTION * scale;
     let any = settling.take_back(is_pressed);
     settling.pushed = pushed;
     any
@@ -275,12 +275,12 @@ fn accelerate_region(
     stage: &mut Stage,
     time: Time,
 ) {
-    for &body in &region.bodies {
+    for &body in region.bodies() {
         stage.movings[body.index()] = assembly.flyer(body).moving_at(time);
     }
-    assembly.laws().list(&region.bodies, &mut settling.laws);
+    assembly.laws().list(region.bodies(), &mut settling.laws);
     let physics = physics(assembly, connectors);
-    let of_region = (region.bodies.as_slice(), settling.laws.as_slice());
+    let of_region = (region.bodies(), settling.laws.as_slice());
     stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
 }
 
@@ -289,7 +289,7 @@ fn pose_problem(assembly: &Assembly, region: &Region, settling: &mut Settling, s
     let least = f64::EPSILON * assembly.settings().tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
     region.begin(problem, |body| assembly.inertia(body));
     for &index in &settling.candidates {
-        let record = &region.records[index];
+        let record = &region.records()[index];
         // Accelerations that move nothing in the longest time are rounding, as are those that remain of
         // accelerations across the normal.
         let offset = free_offset(region, record, stage);
@@ -311,10 +311,10 @@ fn drop_idle(
     let Settling { candidates, solution, gross, .. } = settling;
     // Loads [N] of each body: its own and those of its rows.
     gross.clear();
-    let bodies = region.bodies.iter().zip(&stage.accelerations);
+    let bodies = region.bodies().iter().zip(&stage.accelerations);
     gross.extend(bodies.map(|(&body, acceleration)| assembly.flyer(body).load(acceleration)));
     for (&index, force) in candidates.iter().zip(&solution.force) {
-        for place in places_of(region, &region.records[index]) {
+        for place in places_of(region, &region.records()[index]) {
             gross[place] += force.abs();
         }
     }
@@ -322,14 +322,14 @@ fn drop_idle(
     let mut forces = solution.force.iter();
     candidates.retain(|&index| {
         let force = forces.next().copied().unwrap_or_default();
-        let record = region.records[index];
+        let record = region.records()[index];
         let loads = places_of(region, &record).map(|place| gross[place]);
-        let is_released = Touch::of(&record).is_some_and(|touch| region.cause == Cause::Released(touch));
+        let is_released = Touch::of(&record).is_some_and(|touch| region.cause() == Cause::Released(touch));
         let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
         let least = share * loads.fold(f64::INFINITY, f64::min);
-        let lies_deep = !region.is_unsound && lifted(assembly, pairs, &record).is_some();
+        let lies_deep = !region.is_unsound() && lifted(assembly, pairs, &record).is_some();
         let stays = record.parties.bilateral || force > least || lies_deep;
-        region.records[index].response.force = Some(if stays { force } else { 0.0 });
+        region.set_force(index, if stays { force } else { 0.0 });
         any |= !stays && force > 0.0;
         stays
     });
@@ -346,8 +346,8 @@ fn choose_rows(
     time: Time,
 ) {
     for &index in &settling.candidates {
-        let record = &region.records[index];
-        let lifted = if region.is_unsound { None } else { lifted(assembly, pairs, record) };
+        let record = &region.records()[index];
+        let lifted = if region.is_unsound() { None } else { lifted(assembly, pairs, record) };
         settling.held.extend(held_row(assembly, connectors, record, lifted, time).map(|row| (index, row)));
     }
     settling.list_touches();
@@ -364,7 +364,7 @@ fn held_row(
     let source = source_of(record)?;
     let bodies = record.bodies();
     let hint = match source {
-        RowSource::Connector(id, index) => connectors.states[id.index()].hint_of(index).copied(),
+        RowSource::Connector(id, index) => connectors.states()[id.index()].hint_of(index).copied(),
         RowSource::Contact(_) => None,
     };
     // Bilateral rows are kept at gap 0, the others where they are, unless they have sunk too deep: moving a rope to
@@ -408,19 +408,19 @@ fn settle_error(
     time: Time,
     source: SolveError,
 ) -> AdvanceError {
-    let touching = region.records.iter().map(Collision::bodies);
+    let touching = region.records().iter().map(Collision::bodies);
     if let Err(squeezed) = assembly.refuse_squeezed(touching, LARGEST_MASS_RATIO, time) {
         return squeezed;
     }
     let mut bodies: Vec<BodyId> =
-        settling.candidates.iter().flat_map(|&index| region.records[index].bodies()).collect();
+        settling.candidates.iter().flat_map(|&index| region.records()[index].bodies()).collect();
     bodies.sort_unstable();
     bodies.dedup();
     let row = source.row().and_then(|row| settling.candidates.get(row));
     AdvanceError::Contacts {
         time: time.seconds(),
         bodies,
-        between: row.map(|&index| Between::of(&region.records[index])),
+        between: row.map(|&index| Between::of(&region.records()[index])),
         problem: Box::new(settling.problem.clone()),
         source: Box::new(source),
     }
@@ -504,12 +504,12 @@ mod tests {
         let leaving = BodyState { position, velocity: DVec2::new(0.0, -1e-8), ..BodyState::default() };
         interrupt(&mut rooms.assembly, &mut rooms.books, BodyId(3)).fly_from(Time::ZERO, leaving);
         let EventWork { region, settling, .. } = &mut *work;
-        region.cause = Cause::Start;
+        region.set_cause(Cause::Start);
         collect_region(&rooms.view(), region, &[BodyId(2), BodyId(3)], rooms.assembly.now());
-        region.cause = Cause::Other;
+        region.set_cause(Cause::Other);
         let touch = |record: &&Collision| record.involves_body(BodyId(3));
-        let touch = region.records.iter().find(touch).and_then(Touch::of).expect("they touch");
-        settling.set_likely(region.records.iter().map(|_| None));
+        let touch = region.records().iter().find(touch).and_then(Touch::of).expect("they touch");
+        settling.set_likely(region.records().iter().map(|_| None));
         let mut stage = std::mem::take(&mut rooms.groups.stage);
         settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), true).expect("it rests");
         assert!(settling.held.len() >= 2, "the posts hold the beam");
@@ -550,8 +550,8 @@ mod tests {
         collect_region(&rooms.view(), region, &[BodyId(1)], rooms.assembly.now());
         let mut stage = std::mem::take(&mut rooms.groups.stage);
         for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
-            region.is_hasty = is_hasty;
-            region.records[0].motion.normal_velocity = share * rooms.assembly.rest_speed();
+            region.set_hasty(is_hasty);
+            region.records_mut()[0].motion.normal_velocity = share * rooms.assembly.rest_speed();
             settling.set_likely([None].into_iter());
             settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false)
                 .expect("it rests");

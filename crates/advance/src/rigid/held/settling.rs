@@ -21,15 +21,15 @@ const LENIENT_RESIDUAL: f64 = 1e-6;
 pub(crate) struct Settling {
     pub(super) problem: Problem,
     pub(super) solution: Solution,
-    solver: Auto,
+    pub(super) solver: Auto,
     /// Solver for the forces at the start, where nothing is known of perhaps thousands of rows.
-    sharing: Auto,
+    pub(super) sharing: Auto,
     /// The event is the start: `sharing` solves it.
     pub(super) is_start: bool,
     /// A group was ended at the present time as soon as it was made, because one of its contacts pulled.
-    pub(crate) has_pulled: bool,
+    pub(super) has_pulled: bool,
     /// Solver for contacts that contradict each other by more than rounding, but by little.
-    lenient: Auto,
+    pub(super) lenient: Auto,
     /// Indices of the records that enter the problem.
     pub(super) candidates: Vec<usize>,
     /// Indices of the records that were left out because rows seemed to work against each other.
@@ -39,18 +39,18 @@ pub(crate) struct Settling {
     pub(super) levers: Levers,
     pub(super) redundant: Redundant,
     /// Whether each record of the region is likely to carry a force, if that is known.
-    likely: Vec<Option<bool>>,
+    pub(super) likely: Vec<Option<bool>>,
     /// For each record, true if it still opened after low hops were stilled: it leaves.
-    leaving: Vec<bool>,
+    pub(super) leaving: Vec<bool>,
     /// Force [N] of each record in the last solve of the event, if it took part; before the first solve, the force at
     /// which its contact was cut.
-    forces: Vec<Option<f64>>,
+    pub(super) forces: Vec<Option<f64>>,
     /// Contacts that were cut in the event, sorted, with their forces [N].
-    ended: Vec<(Touch, f64)>,
+    pub(super) ended: Vec<(Touch, f64)>,
     /// The solver's initial guess for the candidates.
-    guess: WarmStart,
+    pub(super) guess: WarmStart,
     /// The rows to be held, with the index of each one's record.
-    pub(crate) held: Vec<(usize, HeldRow)>,
+    pub(super) held: Vec<(usize, HeldRow)>,
     /// The contacts among the rows to be held, sorted.
     pub(super) touches: Vec<Touch>,
     pub(super) laws: Vec<usize>,
@@ -101,6 +101,17 @@ impl Default for Settling {
 }
 
 impl Settling {
+    /// Notes whether a group was ended at the present time as soon as it was made, because one of its contacts pulled.
+    pub(crate) fn note_pull(&mut self, has_pulled: bool) {
+        self.has_pulled = has_pulled;
+    }
+
+    /// The rows to be held, for tests that change them.
+    #[cfg(test)]
+    pub(crate) fn held_mut(&mut self) -> &mut [(usize, HeldRow)] {
+        &mut self.held
+    }
+
     /// Solves for the forces of the candidates, starting from those that are likely to carry some, and notes the
     /// forces.
     pub(super) fn solve_strictly(&mut self) -> Result<(), SolveError> {
@@ -149,7 +160,7 @@ impl Settling {
             return;
         }
         self.ended.sort_unstable_by_key(|(touch, _)| *touch);
-        self.forces.extend(region.records.iter().map(|record| {
+        self.forces.extend(region.records().iter().map(|record| {
             let touch = Touch::of(record)?;
             let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
             Some(self.ended[place].1)
@@ -220,7 +231,7 @@ impl Settling {
         sums: &mut [[f64; 3]],
     ) {
         for (&index, force) in records.iter().zip(&self.solution.force) {
-            let record = &region.records[index];
+            let record = &region.records()[index];
             let j = &record.motion.kinematics.jacobian;
             let sides = record.bodies();
             for (side, body) in sides.into_iter().enumerate() {
@@ -231,6 +242,15 @@ impl Settling {
                 }
             }
         }
+    }
+}
+
+impl Settling {
+    // getters of Settling
+    /// The rows to be held, with the index of each one's record.
+    #[inline]
+    pub(crate) fn held(&self) -> &[(usize, HeldRow)] {
+        &self.held
     }
 }
 
@@ -260,7 +280,7 @@ mod tests {
         let mut rooms = resting_discs(&[0.0, 1.5]);
         let mut work = rooms.work.take().expect("the start has made it");
         collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
-        let [record] = work.region.records[..] else { panic!("one disc, one contact") };
+        let [record] = work.region.records()[..] else { panic!("one disc, one contact") };
         assert_eq!(is_likely(&rooms.pairs, &record), Some(true));
         // Another contact, of which nothing is known, carries a force, too.
         let settling = &mut work.settling;

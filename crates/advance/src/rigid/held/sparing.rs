@@ -24,7 +24,7 @@ pub(crate) fn spare_redundant(
     if is_jam(assembly, region, stage, largest) {
         return;
     }
-    let is_start = region.cause == Cause::Start;
+    let is_start = region.cause() == Cause::Start;
     if is_start && (rows.factorize(held) == 0 || !rows.pulls(held, problem.offset(), as_held)) {
         return;
     }
@@ -47,8 +47,8 @@ pub(crate) fn spare_nearly_redundant(assembly: &Assembly, region: &mut Region, s
 fn list_candidates(assembly: &Assembly, region: &Region, candidates: &[usize], rows: &mut Rows) {
     let Rows { inertia, sides, jacobians, forces, bilateral, .. } = rows;
     inertia.clear();
-    inertia.extend(region.bodies.iter().map(|&body| assembly.inertia(body)));
-    let records = || candidates.iter().map(|&index| &region.records[index]);
+    inertia.extend(region.bodies().iter().map(|&body| assembly.inertia(body)));
+    let records = || candidates.iter().map(|&index| &region.records()[index]);
     sides.clear();
     let place = |body| region.place(body).and_then(|place| u32::try_from(place).ok());
     sides.extend(records().map(|record| record.bodies().map(place)));

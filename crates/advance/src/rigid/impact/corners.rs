@@ -55,7 +55,7 @@ pub(crate) fn take_slower(
     opening: [f64; 2],
 ) {
     let [before, after] = [0, 1].map(|side: usize| {
-        let row = row_of(assembly, &region.records[corner.records[side]]);
+        let row = row_of(assembly, &region.records()[corner.records[side]]);
         let ease: f64 = row.jacobian.iter().zip(&row.response).map(|(j, response)| j * response).sum();
         opening[side] / ease.sqrt()
     });
@@ -72,15 +72,15 @@ pub(crate) fn take_side(
     go_along(connectors, corner.id, side);
     let moving =
         connectors.connector(corner.id).bodies().map(|body| assembly.moving_at(body, assembly.now()));
-    region.records[corner.records[0]] =
-        connectors.connector_record(assembly, corner.id, 0, &moving, assembly.now());
-    region.records.remove(corner.records[1]);
+    let record = connectors.connector_record(assembly, corner.id, 0, &moving, assembly.now());
+    region.set_record(corner.records[0], record);
+    region.remove_record(corner.records[1]);
 }
 
 impl Corner {
     /// Rates [m/s] at which the point parts from the sides.
     pub(crate) fn rates(&self, region: &Region) -> [f64; 2] {
-        self.records.map(|record| region.records[record].motion.normal_velocity)
+        self.records.map(|record| region.records()[record].motion.normal_velocity)
     }
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn corners(region: &Region) -> impl Iterator<Item = Corner> + use<'_>
         Detector::Connector { id, row } if !record.parties.bilateral => Some((id, row)),
         _ => None,
     };
-    region.records.windows(2).enumerate().filter_map(move |(first, pair)| {
+    region.records().windows(2).enumerate().filter_map(move |(first, pair)| {
         let [(id, 0), (other, 1)] = [side(&pair[0])?, side(&pair[1])?] else { return None };
         (id == other).then_some(Corner { id, records: [first, first + 1] })
     })

@@ -62,8 +62,8 @@ pub(crate) fn set_rows(
     region: &Region,
     impact: &mut Impact,
 ) {
-    let dull = assembly.settings().impulse_step.is_none() && bounces_low(assembly, pairs, &region.records);
-    let rows = region.records.iter().map(|record| {
+    let dull = assembly.settings().impulse_step.is_none() && bounces_low(assembly, pairs, region.records());
+    let rows = region.records().iter().map(|record| {
         let row = row_of(assembly, record);
         let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
         CollisionRow { elasticity, held: was_held(connectors, pairs, record), ..row }
@@ -94,15 +94,15 @@ fn apply_impulses(
     time: Time,
 ) {
     region.sum_changes(impact);
-    for (&body, &[x, y, spin]) in region.bodies.iter().zip(&region.changes) {
+    for (&body, &[x, y, spin]) in region.bodies().iter().zip(region.changes()) {
         book_damping(assembly, books, body, time);
         interrupt(assembly, books, body).cut(time, DVec2::new(x, y), spin);
         if [x, y, spin] != [0.0; 3] {
             assembly.note_struck(body, time);
         }
     }
-    for (record, &impulse) in region.records.iter_mut().zip(impact.impulses()) {
-        record.response.impulse = Some(impulse);
+    region.set_impulses(impact.impulses());
+    for record in region.records() {
         // Beyond the end of a feature its gap is no distance between bodies.
         if record.parties.primary.site.is_some() && record.geometry.outside <= 0.0 {
             books.note_gap(record.geometry.distance);
@@ -120,7 +120,7 @@ fn write_report(
     report.time = time;
     report.energy_change = 0.0;
     report.rows.clear();
-    for (index, record) in region.records.iter().enumerate() {
+    for (index, record) in region.records().iter().enumerate() {
         let impulse = impact.impulses()[index];
         let (rate_before, rate_after) = (impact.rows()[index].rate, impact.rates()[index]);
         if impulse != 0.0 {
@@ -131,7 +131,7 @@ fn write_report(
         }
     }
     report.states.clear();
-    let struck = region.bodies.iter().zip(&region.struck).filter(|&(_, &is_struck)| is_struck);
+    let struck = region.bodies().iter().zip(region.struck()).filter(|&(_, &is_struck)| is_struck);
     report.states.extend(struck.map(|(&body, _)| (body, assembly.flyer(body).state_at(time))));
 }
 
@@ -141,13 +141,13 @@ pub(crate) fn impact_error(
     time: Time,
     source: ImpactError,
 ) -> AdvanceError {
-    let touching = region.records.iter().map(Collision::bodies);
+    let touching = region.records().iter().map(Collision::bodies);
     if let Err(squeezed) = assembly.refuse_squeezed(touching, LARGEST_MASS_RATIO, time) {
         return squeezed;
     }
-    let mut bodies: Vec<BodyId> = region.records.iter().flat_map(Collision::bodies).collect();
+    let mut bodies: Vec<BodyId> = region.records().iter().flat_map(Collision::bodies).collect();
     bodies.sort_unstable();
     bodies.dedup();
-    let record = source.row().and_then(|row| region.records.get(row));
+    let record = source.row().and_then(|row| region.records().get(row));
     AdvanceError::Impact { time: time.seconds(), bodies, between: record.map(Between::of), source }
 }

@@ -9,7 +9,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::impact::impacts::{Manner, find_impulses};
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
-use halfgap_collision::{BodyId, Collision};
+use halfgap_collision::Collision;
 use halfgap_contact::{Impact, ImpactError};
 
 /// Impulses jam if they exceed the largest change of momentum of any body by this factor; so do forces that exceed all
@@ -19,12 +19,10 @@ pub(crate) const JAM: f64 = 100.0;
 /// Leaves out of a region the contacts farther apart than the gap at which bodies fire, if the impulses of contacts
 /// jam; true if there are any.
 pub(crate) fn leave_out_jammed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> bool {
-    region.left_out.clear();
-    if region.records.iter().all(|record| is_close(assembly, record)) || !jams(assembly, region, impact) {
+    if region.records().iter().all(|record| is_close(assembly, record)) || !jams(assembly, region, impact) {
         return false;
     }
-    let Region { records, left_out, .. } = region;
-    left_out.extend(records.extract_if(.., |record| !is_close(assembly, record)));
+    region.leave_out(|record| !is_close(assembly, record));
     true
 }
 
@@ -40,7 +38,7 @@ pub(crate) fn find_impulses_of_pressed(
     loop {
         let is_sound = find_impulses(view, region, impact, manner).is_ok();
         if !is_sound || jams(view.assembly, region, impact) {
-            region.records.append(&mut region.left_out);
+            region.admit_all();
             return find_impulses(view, region, impact, manner);
         }
         if !admit_pressed(region, impact) {
@@ -56,7 +54,7 @@ pub(crate) fn is_close(assembly: &Assembly, record: &Collision) -> bool {
 
 /// True if the impulses of contacts jam: they cancel each other by far.
 pub(crate) fn jams(assembly: &Assembly, region: &mut Region, impact: &Impact) -> bool {
-    let contacts = region.records.iter().zip(impact.impulses());
+    let contacts = region.records().iter().zip(impact.impulses());
     let contacts = contacts.filter(|(record, _)| !record.parties.bilateral);
     let largest = contacts.fold(0.0f64, |most, (_, impulse)| most.max(impulse.abs()));
     largest > 0.0 && largest > JAM * momentum_changed(assembly, region, impact)
@@ -66,38 +64,17 @@ pub(crate) fn jams(assembly: &Assembly, region: &mut Region, impact: &Impact) ->
 /// plus that of spin at its reach.
 fn momentum_changed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> f64 {
     region.sum_changes(impact);
-    let changed = region.bodies.iter().zip(&region.changes);
+    let changed = region.bodies().iter().zip(region.changes());
     changed.map(|(&body, change)| assembly.flyer(body).load(change)).fold(0.0, f64::max)
 }
 
 /// Lets in again the records left out that are pressed by the impulses found without them; true if there are any.
 fn admit_pressed(region: &mut Region, impact: &Impact) -> bool {
     region.sum_changes(impact);
-    let (mut records, mut left_out) =
-        (std::mem::take(&mut region.records), std::mem::take(&mut region.left_out));
-    let rates = records.iter().chain(&left_out).map(|record| -record.motion.normal_velocity);
+    let records = region.records().iter().chain(region.left_out());
+    let rates = records.map(|record| -record.motion.normal_velocity);
     let least = SMALL_CONTRADICTION * rates.fold(0.0, f64::max);
-    let before = records.len();
-    records.extend(left_out.extract_if(.., |record| {
-        let (rate, change) = (record.motion.normal_velocity, region.change_of(record));
-        change.max(rate + change) < -least
-    }));
-    let any = records.len() > before;
-    (region.records, region.left_out) = (records, left_out);
-    any
-}
-
-impl Region {
-    /// Change of the rate of a record [m/s] by the changes of its bodies' velocities; positive opens.
-    fn change_of(&self, record: &Collision) -> f64 {
-        let j = &record.motion.kinematics.jacobian;
-        let sides = record.bodies();
-        let of_side = |(side, body): (usize, BodyId)| {
-            let change = self.place(body).map_or([0.0; 3], |place| self.changes[place]);
-            (0..3).map(|k| j[3 * side + k] * change[k]).sum::<f64>()
-        };
-        sides.into_iter().enumerate().map(of_side).sum()
-    }
+    region.admit(|record, change| change.max(record.motion.normal_velocity + change) < -least)
 }
 
 /// Contradiction of rows, relative to the largest acceleration, up to which contacts are solved by least squares: that
@@ -119,6 +96,7 @@ mod tests {
     use crate::rigid::test_scene::rooms_of;
     use crate::time::Time;
     use glam::DVec2;
+    use halfgap_collision::BodyId;
     use halfgap_collision::{Body, BodyState, Tolerances};
     use halfgap_geometry::Shape;
 
@@ -160,7 +138,7 @@ mod tests {
             let state = BodyState { velocity, angular_velocity: 0.0, ..state };
             interrupt(&mut rooms.assembly, &mut rooms.books, body).fly_from(Time::ZERO, state);
         }
-        work.region.cause = Cause::Start;
+        work.region.set_cause(Cause::Start);
         collect_region(&rooms.view(), &mut work.region, &[BodyId(2), BodyId(3)], rooms.assembly.now());
         let (mut report, manner) = (ImpactReport::default(), Manner::Inelastic);
         let now = rooms.assembly.now();

@@ -82,8 +82,8 @@ fn collect_touches(view: &View<'_>, region: &mut Region, place: usize, time: Tim
         if region.place(other).is_some_and(|earlier| earlier < place) {
             continue;
         }
-        let lanes = [&view.search.lanes[body.index()], &view.search.lanes[other.index()]];
-        let reach = lanes[0].reach + lanes[1].reach + view.assembly.settings().tolerances.distance_tol();
+        let lanes = [&view.search.lanes()[body.index()], &view.search.lanes()[other.index()]];
+        let reach = lanes[0].reach() + lanes[1].reach() + view.assembly.settings().tolerances.distance_tol();
         let offset = moving.pose.position - position_of(view.assembly, view.search, other, time);
         // A contact that has fired may be farther apart by rounding.
         let has_fired = region.cause.fired().is_some_and(|fired| fired.bodies == sorted(body, other));
@@ -108,9 +108,9 @@ fn collect_touches(view: &View<'_>, region: &mut Region, place: usize, time: Tim
 
 /// Position [m] of a body's centre of mass at a time of its present segment.
 fn position_of(assembly: &Assembly, search: &Neighbourhood, body: BodyId, time: Time) -> DVec2 {
-    let lane = &search.lanes[body.index()];
+    let lane = &search.lanes()[body.index()];
     let flown = || assembly.flyer(body).moving_at(time).pose.position;
-    if lane.kind == LaneKind::Other {
+    if lane.kind() == LaneKind::Other {
         return flown();
     }
     debug_assert_eq!(lane.position_at(time), flown(), "lanes are renewed with their bodies");
@@ -195,7 +195,7 @@ pub(crate) fn passes_by(search: &Neighbourhood, record: &Collision) -> bool {
     if record.parties.detector != Detector::CornerCorner {
         return false;
     }
-    let halo = |body: BodyId| search.lanes[body.index()].halo;
+    let halo = |body: BodyId| search.lanes()[body.index()].halo();
     let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
     let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
     let nearest = record.geometry.distance * across.abs() / libm::hypot(along, across);

@@ -2,7 +2,6 @@
 
 pub(super) mod cause;
 pub(super) mod collecting;
-pub(super) mod lift;
 pub(super) mod records;
 pub(super) mod touching;
 pub(super) mod view;

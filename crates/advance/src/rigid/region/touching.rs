@@ -12,34 +12,34 @@ use halfgap_contact::{Impact, InverseInertia, Problem, ProblemBody, Row};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Region {
     /// The movable bodies, in the order in which they were found.
-    pub(crate) bodies: Vec<BodyId>,
+    pub(super) bodies: Vec<BodyId>,
     /// Records of all places where they touch, each once.
-    pub(crate) records: Vec<Collision>,
+    pub(super) records: Vec<Collision>,
     /// All pairs of features that touch.
-    pub(crate) touches: Vec<Touch>,
+    pub(super) touches: Vec<Touch>,
     /// Gap [m] and rate [m/s] of each pair in `touches` after the event.
-    pub(crate) motions: Vec<(f64, f64)>,
+    pub(super) motions: Vec<(f64, f64)>,
     /// Leaders of the groups of these bodies.
-    pub(crate) groups: Vec<BodyId>,
+    pub(super) groups: Vec<BodyId>,
     /// Cause of the event.
-    pub(crate) cause: Cause,
+    pub(super) cause: Cause,
     /// True if the event is one too many in a short time.
-    pub(crate) in_storm: bool,
+    pub(super) in_storm: bool,
     /// True if steps have become so short that contacts that count as resting seem to take turns.
-    pub(crate) is_hasty: bool,
+    pub(super) is_hasty: bool,
     /// True if the rows that would be held were found to be unsound: contacts that nearly depend on others are spared,
     /// and all are held where they are.
-    pub(crate) is_unsound: bool,
-    pub(crate) fresh: Vec<Collision>,
+    pub(super) is_unsound: bool,
+    pub(super) fresh: Vec<Collision>,
     /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].
-    pub(crate) changes: Vec<[f64; 3]>,
+    pub(super) changes: Vec<[f64; 3]>,
     /// Whether an impulse acts on each body.
-    pub(crate) struck: Vec<bool>,
+    pub(super) struck: Vec<bool>,
     /// Records that were left out because they jam.
-    pub(crate) left_out: Vec<Collision>,
+    pub(super) left_out: Vec<Collision>,
     /// Stamp and place in `bodies` of each body, valid where the stamp is the present one.
-    places: Vec<(u32, u32)>,
-    stamp: u32,
+    pub(super) places: Vec<(u32, u32)>,
+    pub(super) stamp: u32,
 }
 
 impl Region {
@@ -56,6 +56,116 @@ impl Region {
             self.places.fill((0, 0));
             self.stamp = 1;
         }
+    }
+
+    /// Sets the cause of the event.
+    pub(crate) fn set_cause(&mut self, cause: Cause) {
+        self.cause = cause;
+    }
+
+    /// Notes whether the event is one too many in a short time.
+    pub(crate) fn set_in_storm(&mut self, in_storm: bool) {
+        self.in_storm = in_storm;
+    }
+
+    /// Notes whether contacts that count as resting seem to take turns.
+    pub(crate) fn set_hasty(&mut self, is_hasty: bool) {
+        self.is_hasty = is_hasty;
+    }
+
+    /// Notes that the rows that would be held were found to be unsound.
+    pub(crate) fn set_unsound(&mut self) {
+        self.is_unsound = true;
+    }
+
+    /// Keeps the records of which a test is true.
+    pub(crate) fn retain_records(&mut self, stays: impl FnMut(&Collision) -> bool) {
+        self.records.retain(stays);
+    }
+
+    /// Sets the force [N] of a record.
+    pub(crate) fn set_force(&mut self, record: usize, force: f64) {
+        self.records[record].response.force = Some(force);
+    }
+
+    /// Sets the impulses [N s] of all records.
+    pub(crate) fn set_impulses(&mut self, impulses: &[f64]) {
+        for (record, &impulse) in self.records.iter_mut().zip(impulses) {
+            record.response.impulse = Some(impulse);
+        }
+    }
+
+    /// Replaces a record.
+    pub(crate) fn set_record(&mut self, index: usize, record: Collision) {
+        self.records[index] = record;
+    }
+
+    /// Removes a record.
+    pub(crate) fn remove_record(&mut self, index: usize) {
+        self.records.remove(index);
+    }
+
+    /// Marks contacts as bilateral; true if there are any of which the test is true.
+    pub(crate) fn mark(&mut self, is_wanted: impl Fn(&Collision) -> bool) -> bool {
+        let mut any = false;
+        for record in self.records.iter_mut().filter(|record| is_wanted(record)) {
+            record.parties.bilateral = true;
+            any = true;
+        }
+        any
+    }
+
+    /// Removes the marks as bilateral from the contacts.
+    pub(crate) fn unmark(&mut self) {
+        for record in &mut self.records {
+            record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
+        }
+    }
+
+    /// Lets all records in that are left out.
+    pub(crate) fn admit_all(&mut self) {
+        self.records.append(&mut self.left_out);
+    }
+
+    /// Leaves out the records of which a test is true; those that were left out before are forgotten.
+    pub(crate) fn leave_out(&mut self, is_out: impl Fn(&Collision) -> bool) {
+        self.left_out.clear();
+        self.left_out.extend(self.records.extract_if(.., |record| is_out(record)));
+    }
+
+    /// Lets in again the records left out of which a test is true, given the change of their rate [m/s] by the changes
+    /// of the bodies' velocities; true if there are any.
+    pub(crate) fn admit(&mut self, is_in: impl Fn(&Collision, f64) -> bool) -> bool {
+        let (mut records, mut left_out) =
+            (std::mem::take(&mut self.records), std::mem::take(&mut self.left_out));
+        let before = records.len();
+        records.extend(left_out.extract_if(.., |record| is_in(record, self.change_of(record))));
+        let any = records.len() > before;
+        (self.records, self.left_out) = (records, left_out);
+        any
+    }
+
+    /// Change of the rate of a record [m/s] by the changes of its bodies' velocities; positive opens.
+    fn change_of(&self, record: &Collision) -> f64 {
+        let j = &record.motion.kinematics.jacobian;
+        let sides = record.bodies();
+        let of_side = |(side, body): (usize, BodyId)| {
+            let change = self.place(body).map_or([0.0; 3], |place| self.changes[place]);
+            (0..3).map(|k| j[3 * side + k] * change[k]).sum::<f64>()
+        };
+        sides.into_iter().enumerate().map(of_side).sum()
+    }
+
+    /// The records, for tests that change them.
+    #[cfg(test)]
+    pub(crate) fn records_mut(&mut self) -> &mut [Collision] {
+        &mut self.records
+    }
+
+    /// Forgets the touches, for tests.
+    #[cfg(test)]
+    pub(crate) fn forget_touches(&mut self) {
+        self.touches.clear();
     }
 
     /// Place of a body in the region; `None` for bodies outside it and those that cannot move.
@@ -113,4 +223,80 @@ pub(crate) fn measure_touches(assembly: &Assembly, region: &mut Region) {
     let Region { touches, motions, .. } = region;
     motions.clear();
     motions.extend(touches.iter().map(|&touch| gap_at(assembly, touch, assembly.now())));
+}
+
+impl Region {
+    // getters of Region
+    /// The movable bodies, in the order in which they were found.
+    #[inline]
+    pub(crate) fn bodies(&self) -> &[BodyId] {
+        &self.bodies
+    }
+
+    /// Cause of the event.
+    #[inline]
+    pub(crate) fn cause(&self) -> Cause {
+        self.cause
+    }
+
+    /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].
+    #[inline]
+    pub(crate) fn changes(&self) -> &[[f64; 3]] {
+        &self.changes
+    }
+
+    /// Leaders of the groups of these bodies.
+    #[inline]
+    pub(crate) fn groups(&self) -> &[BodyId] {
+        &self.groups
+    }
+
+    /// True if the event is one too many in a short time.
+    #[inline]
+    pub(crate) fn in_storm(&self) -> bool {
+        self.in_storm
+    }
+
+    /// True if steps have become so short that contacts that count as resting seem to take turns.
+    #[inline]
+    pub(crate) fn is_hasty(&self) -> bool {
+        self.is_hasty
+    }
+
+    /// True if the rows that would be held were found to be unsound: contacts that nearly depend on others are spared,
+    /// and all are held where they are.
+    #[inline]
+    pub(crate) fn is_unsound(&self) -> bool {
+        self.is_unsound
+    }
+
+    /// Records that were left out because they jam.
+    #[inline]
+    pub(crate) fn left_out(&self) -> &[Collision] {
+        &self.left_out
+    }
+
+    /// Gap [m] and rate [m/s] of each pair in `touches` after the event.
+    #[inline]
+    pub(crate) fn motions(&self) -> &[(f64, f64)] {
+        &self.motions
+    }
+
+    /// Records of all places where they touch, each once.
+    #[inline]
+    pub(crate) fn records(&self) -> &[Collision] {
+        &self.records
+    }
+
+    /// Whether an impulse acts on each body.
+    #[inline]
+    pub(crate) fn struck(&self) -> &[bool] {
+        &self.struck
+    }
+
+    /// All pairs of features that touch.
+    #[inline]
+    pub(crate) fn touches(&self) -> &[Touch] {
+        &self.touches
+    }
 }

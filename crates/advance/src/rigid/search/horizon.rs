@@ -77,7 +77,7 @@ mod tests {
         let rooms = squares_in_a_row().into_rooms();
         let known = |a, b| {
             let pair = rooms.pairs.get(rooms.pairs.between(a, b).expect("they are near each other"));
-            (pair.prediction, pair.clear.seconds())
+            (pair.prediction(), pair.clear().seconds())
         };
         let (prediction, time) = known(MOVING, NEAR);
         assert!(matches!(prediction, Prediction::Contact(_)) && (time - MEETS_NEAR).abs() < 1e-6);

@@ -26,27 +26,27 @@ pub(crate) enum LaneKind {
 #[repr(align(128))]
 pub(crate) struct Lane {
     /// Position [m] at the start; of an integrated motion, the middle of the box that holds its course.
-    position: DVec2,
+    pub(super) position: DVec2,
     /// Velocity [m/s] at the start; 0 for an integrated motion.
-    velocity: DVec2,
+    pub(super) velocity: DVec2,
     /// Time at which the segment started.
-    start: Time,
+    pub(super) start: Time,
     /// Time until which the body surely stays in its box.
-    pub(crate) stay: Time,
+    pub(super) stay: Time,
     /// Acceleration [m/s^2].
-    acceleration: DVec2,
+    pub(super) acceleration: DVec2,
     /// Largest distance [m] of a point of the body from its centre of mass.
-    pub(crate) reach: f64,
+    pub(super) reach: f64,
     /// Radius [m] of a disc about the centre of mass; 0 for any other body.
-    pub(crate) radius: f64,
+    pub(super) radius: f64,
     /// Gap [m] at which the body fires.
-    pub(crate) halo: f64,
+    pub(super) halo: f64,
     /// Without a parabola: largest distance [m] of the centre of mass from `position` during the segment, beyond that
     /// which `velocity` and `acceleration` make.
-    course: f64,
-    pub(crate) kind: LaneKind,
+    pub(super) course: f64,
+    pub(super) kind: LaneKind,
     /// The body neither moves nor is about to.
-    pub(crate) is_at_rest: bool,
+    pub(super) is_at_rest: bool,
 }
 
 /// A disc in which a centre of mass stays for some time.
@@ -58,6 +58,11 @@ pub(crate) struct Course {
 }
 
 impl Lane {
+    /// Sets the gap [m] at which the body fires.
+    pub(super) fn set_halo(&mut self, halo: f64) {
+        self.halo = halo;
+    }
+
     /// The lane of a body that stays in its box for ever and fires at a gap [m].
     pub(crate) fn new(flyer: &Flyer, halo: f64) -> Self {
         let mut lane = Self {
@@ -138,6 +143,33 @@ impl Lane {
             velocity: self.velocity + self.acceleration * t,
             acceleration: self.acceleration,
         }
+    }
+}
+
+impl Lane {
+    // getters of Lane
+    /// Gap [m] at which the body fires.
+    #[inline]
+    pub(crate) fn halo(&self) -> f64 {
+        self.halo
+    }
+
+    /// The kind.
+    #[inline]
+    pub(crate) fn kind(&self) -> LaneKind {
+        self.kind
+    }
+
+    /// Radius [m] of a disc about the centre of mass; 0 for any other body.
+    #[inline]
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Largest distance [m] of a point of the body from its centre of mass.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
     }
 }
 

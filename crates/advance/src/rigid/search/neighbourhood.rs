@@ -15,29 +15,61 @@ use halfgap_geometry::FeatureId;
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbourhood {
     /// Motion and size of each body, as predictions read them.
-    pub(crate) lanes: Vec<Lane>,
+    pub(super) lanes: Vec<Lane>,
     /// Room of each body in the broad phase.
-    pub(crate) rooms: Vec<Room>,
-    pub(crate) broad: BroadPhase,
+    pub(super) rooms: Vec<Room>,
+    pub(super) broad: BroadPhase,
     /// Time of the first contact known of each body, or of the group that it leads.
-    pub(crate) first_contacts: Vec<Time>,
+    pub(super) first_contacts: Vec<Time>,
     /// Pairs that never collide, the lesser id first, sorted.
-    pub(crate) excluded: Vec<(BodyId, BodyId)>,
+    pub(super) excluded: Vec<(BodyId, BodyId)>,
     /// True for bodies that no other body can collide with.
-    pub(crate) loners: Vec<bool>,
+    pub(super) loners: Vec<bool>,
     /// Contacts that lie deep, with the gaps [m] at which they were to fire, while the rules are made anew.
-    pub(crate) deep: Vec<(PairId, [FeatureId; 2], f64)>,
+    pub(super) deep: Vec<(PairId, [FeatureId; 2], f64)>,
     /// Buffer: pairs whose rules or predictions an event changes.
-    pub(crate) touched: Vec<PairId>,
+    pub(super) touched: Vec<PairId>,
     /// Buffer: links of a body.
-    pub(crate) links: Vec<Link>,
+    pub(super) links: Vec<Link>,
     /// Buffer: bodies near a body.
-    pub(crate) neighbours: Vec<BodyId>,
+    pub(super) neighbours: Vec<BodyId>,
     /// Buffer: which of these are known already.
-    pub(crate) marks: Marks,
+    pub(super) marks: Marks,
 }
 
 impl Neighbourhood {
+    /// Copies the present motion of a body, whose box stays as it is.
+    pub(crate) fn follow(&mut self, flyer: &Flyer, body: BodyId) {
+        self.lanes[body.index()].follow(flyer);
+    }
+
+    /// Sets the gap [m] at which a body fires.
+    pub(crate) fn set_halo(&mut self, body: BodyId, halo: f64) {
+        self.lanes[body.index()].set_halo(halo);
+    }
+
+    /// Takes out the buffer of pairs.
+    pub(crate) fn take_touched(&mut self) -> Vec<PairId> {
+        let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        touched
+    }
+
+    /// Puts back the buffer of pairs.
+    pub(crate) fn put_touched(&mut self, touched: Vec<PairId>) {
+        self.touched = touched;
+    }
+
+    /// Forgets the contacts that lie deep.
+    pub(crate) fn clear_deep(&mut self) {
+        self.deep.clear();
+    }
+
+    /// Puts aside a contact that lies deep, with the gap [m] at which it was to fire.
+    pub(crate) fn put_deep(&mut self, pair: PairId, features: [FeatureId; 2], target: f64) {
+        self.deep.push((pair, features, target));
+    }
+
     /// Sets up the search for bodies; the broad phase is still empty.
     pub(crate) fn new(
         flyers: &[Flyer],
@@ -74,4 +106,31 @@ pub(crate) fn loners(count: usize, collisions: bool, excluded: &[(BodyId, BodyId
         }
     }
     partners.into_iter().map(|partners| !collisions || partners == 0).collect()
+}
+
+impl Neighbourhood {
+    // getters of Neighbourhood
+    /// Contacts that lie deep, with the gaps [m] at which they were to fire, while the rules are made anew.
+    #[inline]
+    pub(crate) fn deep(&self) -> &[(PairId, [FeatureId; 2], f64)] {
+        &self.deep
+    }
+
+    /// Pairs that never collide, the lesser id first, sorted.
+    #[inline]
+    pub(crate) fn excluded(&self) -> &[(BodyId, BodyId)] {
+        &self.excluded
+    }
+
+    /// Motion and size of each body, as predictions read them.
+    #[inline]
+    pub(crate) fn lanes(&self) -> &[Lane] {
+        &self.lanes
+    }
+
+    /// True for bodies that no other body can collide with.
+    #[inline]
+    pub(crate) fn loners(&self) -> &[bool] {
+        &self.loners
+    }
 }

@@ -100,7 +100,7 @@ impl Searching<'_> {
     /// known.
     pub(crate) fn predict(&mut self, pair: PairId) {
         let [a, b] = self.pairs.bodies(pair);
-        let from = self.pairs.get(pair).clear.max(self.assembly.now());
+        let from = self.pairs.get(pair).clear().max(self.assembly.now());
         let disc = self.disc_at(a, from);
         self.predict_from(from, disc.as_ref(), Link { pair, other: b });
     }
@@ -130,7 +130,7 @@ impl Searching<'_> {
         let lane = &self.search.lanes[link.other.index()];
         let tolerances = self.assembly.settings().tolerances;
         let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
-        if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules {
+        if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules() {
             return None;
         }
         // A motion in flight is known until the body leaves its box.
@@ -169,7 +169,7 @@ impl Searching<'_> {
         let [a, b] = self.pairs.bodies(pair).map(|body| &self.search.lanes[body.index()]);
         let span = until.since(from);
         let any_integrated = a.kind == LaneKind::Other || b.kind == LaneKind::Other;
-        if self.pairs.get(pair).has_rules || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
+        if self.pairs.get(pair).has_rules() || !any_integrated || span <= 0.0 || span >= LONGEST_SPAN {
             return false;
         }
         let (p, q) = (a.course_from(from, span), b.course_from(from, span));
@@ -179,9 +179,7 @@ impl Searching<'_> {
 
     #[inline]
     pub(crate) fn note_prediction(&mut self, pair: PairId, (prediction, clear): (Prediction, Time)) {
-        let entry = self.pairs.get_mut(pair);
-        let was_quiet = entry.prediction == Prediction::Quiet;
-        (entry.prediction, entry.clear) = (prediction, clear);
+        let was_quiet = self.pairs.foresee(pair, prediction, clear) == Prediction::Quiet;
         if prediction != Prediction::Quiet {
             self.agenda.set(Source::Pair(pair), clear);
         } else if !was_quiet {
@@ -192,7 +190,7 @@ impl Searching<'_> {
     /// Drops the rules of contacts that have opened beyond their target zone: they may fire at their target again.
     fn drop_rules(&mut self, pair: PairId, time: Time) {
         let may_open = |rule: &FeatureRule| rule.target.is_some();
-        if !self.pairs.get(pair).has_rules || !self.pairs.rules(pair).iter().any(may_open) {
+        if !self.pairs.get(pair).has_rules() || !self.pairs.rules(pair).iter().any(may_open) {
             return;
         }
         let [a, b] = self.pairs.bodies(pair);
@@ -307,9 +305,10 @@ fn look_ahead(
 
 #[cfg(test)]
 mod tests {
+
     use super::*;
     use crate::rigid::bodies::flyer::FlightLaw;
-    use crate::rigid::contacts::pairs::Pair;
+
     use crate::rigid::group::groups::group_of;
 
     use crate::rigid::parts::{BodyPart, RigidParts};
@@ -343,11 +342,12 @@ mod tests {
         let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::from_seconds(10.0));
         let pair = rooms.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
-        let expected = rooms.pairs.get(pair).clear;
+        let expected = rooms.pairs.get(pair).clear();
         for lowered in [0.4, 0.0, -1.0, -4.4] {
             rooms.search.lanes[0].halo = lowered * FINE.tolerances.target_gap;
             rooms.searching().predict_all_of(&[BodyId(0)], true);
-            let Pair { prediction, clear, .. } = *rooms.pairs.get(pair);
+            let entry = rooms.pairs.get(pair);
+            let (prediction, clear) = (entry.prediction(), entry.clear());
             assert!(matches!(prediction, Prediction::Contact(_)), "{lowered}: {prediction:?}");
             assert!((clear.since(expected)).abs() < 1e-9, "{lowered}");
         }

@@ -24,42 +24,41 @@ impl Searching<'_> {
                     .map(|body| self.assembly.moving_at(body, self.assembly.now()));
                 let sample = self.connectors.connector(id).measure(0, &a, &b);
                 let slack = slack_of(self.assembly, &sample);
-                let state = &mut self.connectors.states[id.index()];
-                state.slack = slack + f64::from(state.repeats_at(self.assembly.now())) * sink;
-                state.clear = self.assembly.now();
+                let state = &self.connectors.states()[id.index()];
+                let (now, taut) = (self.assembly.now(), state.taut());
+                let slack = slack + f64::from(state.repeats_at(now)) * sink;
+                self.connectors.set_slack(id, slack);
+                self.connectors.set_taut(id, now, taut);
                 self.predict_rope(id, &rope);
             }
         }
     }
-}
 
-impl Searching<'_> {
     /// Continues the search for ropes of some bodies, whose motions are now known for longer.
     pub(crate) fn search_ropes_on(&mut self, bodies: &[BodyId]) {
         for &body in bodies {
             for index in 0..self.connectors.of(body).len() {
                 let id = self.connectors.of(body)[index];
-                let is_known = self.connectors.states[id.index()].taut.is_some();
+                let is_known = self.connectors.states()[id.index()].taut().is_some();
                 if let (Some(rope), false) = (rope_of(self.connectors.connector(id)), is_known) {
                     self.predict_rope(id, &rope);
                 }
             }
         }
     }
-}
 
-impl Searching<'_> {
     fn predict_rope(&mut self, id: ConnectorId, rope: &Rope) {
         let source = Source::Connector(id);
-        self.connectors.states[id.index()].taut = None;
-        if self.connectors.states[id.index()].held || self.connectors.is_rope_watched(id) {
+        let clear = self.connectors.states()[id.index()].clear();
+        self.connectors.set_taut(id, clear, None);
+        if self.connectors.states()[id.index()].held() || self.connectors.is_rope_watched(id) {
             self.agenda.clear(source);
             return;
         }
         let [a, b] = self.connectors.connector(id).bodies();
         let known = [a, b].map(|body| self.assembly.segment_end(body));
         let until = known.into_iter().flatten().min().unwrap_or(Time::NEVER);
-        let mut from = self.connectors.states[id.index()].clear.max(self.assembly.now());
+        let mut from = self.connectors.states()[id.index()].clear().max(self.assembly.now());
         if until <= from {
             self.agenda.clear(source);
             return;
@@ -67,7 +66,7 @@ impl Searching<'_> {
         let mut found = self.search_rope(id, rope, from, until);
         if let Some(slack) = self.slackens(id, from, found) {
             // Once slack it goes taut at its own length.
-            self.connectors.states[id.index()].slack = 0.0;
+            self.connectors.set_slack(id, 0.0);
             from = slack;
             found = self.search_rope(id, rope, from, until);
         }
@@ -76,17 +75,14 @@ impl Searching<'_> {
             RopeSearch::NoneBefore(wait) => (from.plus(wait), None),
         };
         let searches_on = taut.is_none() && clear < until;
-        let state = &mut self.connectors.states[id.index()];
-        (state.clear, state.taut) = (clear, taut);
+        self.connectors.set_taut(id, clear, taut);
         if taut.is_some() || searches_on { self.agenda.set(source, clear) } else { self.agenda.clear(source) }
     }
-}
 
-impl Searching<'_> {
     /// Searches from a time on for the time at which a rope goes taut, with its present excess length.
     fn search_rope(&self, id: ConnectorId, rope: &Rope, from: Time, until: Time) -> RopeSearch {
         let [a, b] = self.connectors.connector(id).bodies();
-        let rope = Rope { length: rope.length + self.connectors.states[id.index()].slack, ..*rope };
+        let rope = Rope { length: rope.length + self.connectors.states()[id.index()].slack(), ..*rope };
         let still = Flight::fixed(glam::DVec2::ZERO, 0.0);
         let path = |body: BodyId| {
             if body.is_world() {
@@ -109,13 +105,11 @@ impl Searching<'_> {
             &self.assembly.settings().search,
         )
     }
-}
 
-impl Searching<'_> {
     /// Time at which a rope with an excess length has clearly gone slack, on the way to the time that a search from a
     /// time on has come to; `None` if it has no excess, or does not slacken.
     fn slackens(&self, id: ConnectorId, from: Time, found: RopeSearch) -> Option<Time> {
-        let slack = self.connectors.states[id.index()].slack;
+        let slack = self.connectors.states()[id.index()].slack();
         if slack <= 0.0 {
             return None;
         }
@@ -127,21 +121,19 @@ impl Searching<'_> {
             self.connectors.connector(id).measure(0, &a, &b).gap > slack + self.assembly.sink()
         })
     }
-}
 
-impl Searching<'_> {
     /// True if the event of a connector is a rope that goes taut; otherwise the search goes on.
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
         let now = self.assembly.now();
-        let is_taut = self.connectors.states[id.index()].taut.is_some();
+        let is_taut = self.connectors.states()[id.index()].taut().is_some();
         let slack = grazing_slack(self.assembly);
         if is_taut
-            && self.connectors.states[id.index()].slack < slack
+            && self.connectors.states()[id.index()].slack() < slack
             && rope_grazes(self.assembly, self.connectors, id)
         {
-            self.connectors.states[id.index()].slack = slack;
+            self.connectors.set_slack(id, slack);
         } else if is_taut {
-            self.connectors.states[id.index()].note_taut(now);
+            self.connectors.note_taut(id, now);
             return true;
         }
         if let Some(rope) = rope_of(self.connectors.connector(id)) {

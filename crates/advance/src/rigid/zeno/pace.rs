@@ -106,7 +106,7 @@ mod tests {
             note_pace(&rooms.assembly, &mut rooms.zeno, &group);
             group.start = group.start.plus(step);
         }
-        [take_haste(&mut rooms.zeno, &work.region.bodies), take_haste(&mut rooms.zeno, &work.region.bodies)]
+        [take_haste(&mut rooms.zeno, work.region.bodies()), take_haste(&mut rooms.zeno, work.region.bodies())]
     }
 
     #[test]

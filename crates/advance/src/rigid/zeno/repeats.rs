@@ -21,8 +21,8 @@ pub(crate) fn has_pulled(zeno: &Zeno, time: Time) -> bool {
 /// Number of times beyond [`CALM_REPEATS`] that a pair has fired at the present time.
 pub(crate) fn repeats_beyond_calm(assembly: &Assembly, pairs: &Pairs, pair: PairId) -> u32 {
     let past = pairs.past(pair);
-    let is_now = past.last_contact.is_some_and(|last| is_same_time(last, assembly.now()));
-    if is_now { past.repeats.saturating_sub(CALM_REPEATS) } else { 0 }
+    let is_now = past.last_contact().is_some_and(|last| is_same_time(last, assembly.now()));
+    if is_now { past.repeats().saturating_sub(CALM_REPEATS) } else { 0 }
 }
 
 /// Counts an event of a pair; returns how often it has fired before at the present time.
@@ -34,11 +34,7 @@ pub(crate) fn note_repeat(
 ) -> Result<u32, AdvanceError> {
     let now = assembly.now();
     let bodies = pairs.bodies(pair);
-    let entry = pairs.past_mut(pair);
-    let is_repeat = entry.last_contact.is_some_and(|last| is_same_time(last, now));
-    entry.repeats = if is_repeat { entry.repeats + 1 } else { 0 };
-    entry.last_contact = Some(now);
-    let (events, [primary, normal]) = (entry.repeats, bodies);
+    let (events, [primary, normal]) = (pairs.count_contact(pair, now), bodies);
     if events > CALM_REPEATS {
         zeno.last_insistent = Some(now);
     }

@@ -4,7 +4,7 @@
 //! turn by turn, and one that is tied is stepped so, however little comes of it.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::contacts::pairs::{PairId, Pairs, Prediction};
+use crate::rigid::contacts::pairs::{PairId, Pairs};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::zeno::memory::Zeno;
 use crate::time::Time;
@@ -22,11 +22,8 @@ const SEARCHES: u32 = 100_000;
 /// Notes that the search of a pair has gone on. If that is since one of the bodies turns too fast, the error is
 /// kept in the memory, to be returned once the event is over.
 pub(crate) fn note_search(assembly: &Assembly, pairs: &mut Pairs, zeno: &mut Zeno, pair: PairId) {
-    let goes_on = pairs.get(pair).prediction == Prediction::SearchOn;
-    let past = pairs.past_mut(pair);
-    past.searches = if goes_on { past.searches + 1 } else { 0 };
-    if past.searches >= SEARCHES {
-        past.searches = 0;
+    if pairs.count_search(pair) >= SEARCHES {
+        pairs.forget_searches(pair);
         let spin = |body: BodyId| assembly.moving_at(body, assembly.now()).angular_velocity;
         let mut bodies = pairs.bodies(pair).into_iter();
         zeno.crawls = bodies.find_map(|body| too_fast(zeno, body, spin(body), assembly.now()));
