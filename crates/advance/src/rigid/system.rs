@@ -76,9 +76,9 @@ impl RigidSystem {
     #[must_use]
     #[inline]
     pub fn counts(&self) -> Counts {
-        let (stage, counts) = (&self.rooms.groups.stage, self.rooms.books.counts());
-        let contact_solves = counts.contact_solves + stage.solves;
-        Counts { evaluations: stage.evaluations, contact_solves, ..counts }
+        let (stage, counts) = (self.rooms.groups.stage(), self.rooms.books.counts());
+        let contact_solves = counts.contact_solves + stage.solves();
+        Counts { evaluations: stage.evaluations(), contact_solves, ..counts }
     }
 
     /// The settings of the system.

@@ -91,8 +91,9 @@ pub(crate) fn block_on_its_corner() -> Rooms {
 pub(crate) fn turn_on_its_corner(group: &mut Group, angle: f64, spin: f64) {
     let tilt = angle - FRAC_PI_4;
     let (height, rise) = (0.1 + 0.4 * SQRT_2 * tilt.cos() + DISCS_GAP, -0.4 * SQRT_2 * tilt.sin() * spin);
-    (group.state[1], group.state[2]) = (height, angle);
-    (group.state[4], group.state[5]) = (rise, spin);
+    let state = group.state_mut();
+    (state[1], state[2]) = (height, angle);
+    (state[4], state[5]) = (rise, spin);
 }
 
 /// Makes bodies of 1 kg, with the moment of inertia of a disc of radius 0.5 m, at rest on a floor.

@@ -211,8 +211,8 @@ mod tests {
         let group = rooms.groups.take(BodyId(1)).expect("it is held");
         let mut dense = DensePath::default();
         for part in [1.0, 0.7, 0.1, 0.0] {
-            let span = part * group.span;
-            dense.set(&group.paths[0], span);
+            let span = part * group.span();
+            dense.set(&group.paths()[0], span);
             for offset in [0.0, 0.5 * span, span] {
                 assert_eq!(dense.moving_at(offset), Moving::from(&dense.state_at(offset)));
             }

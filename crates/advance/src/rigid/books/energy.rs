@@ -20,12 +20,11 @@ pub(crate) fn book_damping(assembly: &mut Assembly, books: &mut Books, body: Bod
 
 /// Notes the kinetic energy of a group's bodies at the end of its segment, which may be evaluated nowhere else.
 pub(crate) fn note_kinetic_energy(assembly: &Assembly, books: &mut Books, group: &Group) {
-    let count = group.bodies.len();
-    let of_bodies = group
-        .bodies
-        .iter()
-        .enumerate()
-        .map(|(place, &body)| assembly.kinetic_energy(body, &body_state(&group.end_state, count, place)));
+    let count = group.bodies().len();
+    let of_bodies =
+        group.bodies().iter().enumerate().map(|(place, &body)| {
+            assembly.kinetic_energy(body, &body_state(group.end_state(), count, place))
+        });
     let kinetic = of_bodies.sum::<f64>();
     books.counts.largest_kinetic_energy = books.counts.largest_kinetic_energy.max(kinetic);
 }

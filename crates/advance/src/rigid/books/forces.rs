@@ -20,15 +20,15 @@ pub(crate) fn row_forces(
     groups: &Groups,
     time: Time,
 ) -> Vec<RowForce> {
-    let mut stage = groups.stage.clone();
+    let mut stage = groups.stage().clone();
     let mut found = Vec::new();
-    for group in groups.by_leader.iter().flatten() {
-        let (start, mut group) = (group.start, group.clone());
+    for group in groups.by_leader().iter().flatten() {
+        let (start, mut group) = (group.start(), group.clone());
         let mut dynamics =
             Dynamics { physics: physics(assembly, connectors), group: &mut group, stage: &mut stage, start };
         dynamics.evaluate_at(time.since(start));
-        let rows = group.rows.iter().zip(&stage.forces);
-        found.extend(rows.map(|(row, &force)| row_force(assembly, connectors, row, &stage.movings, force)));
+        let rows = group.rows().iter().zip(stage.forces());
+        found.extend(rows.map(|(row, &force)| row_force(assembly, connectors, row, stage.movings(), force)));
     }
     found
 }
@@ -56,8 +56,8 @@ pub(crate) fn note_ends(
     books: &mut Books,
     group: &Group,
 ) {
-    for (row, &force) in group.rows.iter().zip(&group.end_forces).filter(|(row, _)| !row.bilateral) {
-        let told = row_force(assembly, connectors, row, &groups.stage.movings, force);
+    for (row, &force) in group.rows().iter().zip(group.end_forces()).filter(|(row, _)| !row.bilateral) {
+        let told = row_force(assembly, connectors, row, groups.stage().movings(), force);
         books.told.changes.end.push(told);
     }
 }

@@ -18,9 +18,9 @@ pub(crate) fn write_ledger(
     let mut room = std::mem::take(&mut ledger.laws);
     room.clone_from(laws);
     *ledger = Ledger { impacts, captures, projections, interventions, damping, laws: room };
-    for group in groups.by_leader.iter().flatten() {
-        let offset = time.since(group.start);
-        for (&work, path) in group.works.iter().zip(group.work_paths()) {
+    for group in groups.by_leader().iter().flatten() {
+        let offset = time.since(group.start());
+        for (&work, path) in group.works().iter().zip(group.work_paths()) {
             ledger.book(work, path.value_at(offset));
         }
     }

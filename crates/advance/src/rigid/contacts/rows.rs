@@ -386,7 +386,7 @@ mod tests {
         // A round corner with a radius of 0.1 m on a floor of 20 m, which is body 0.
         let rooms = block_on_its_corner();
         let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is held");
-        let row = HeldRow { leans: false, ..group.rows[0] };
+        let row = HeldRow { leans: false, ..group.rows()[0] };
         let RowSource::Contact([first, second]) = row.source else { panic!("it is a contact") };
         let source = RowSource::Contact([second, first]);
         let swapped = HeldRow { bodies: [row.bodies[1], row.bodies[0]], source, ..row };

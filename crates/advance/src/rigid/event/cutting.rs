@@ -97,8 +97,8 @@ fn cut_exactly(rooms: &mut Rooms, region: &Region, gap: Option<f64>) -> Time {
             .or_else(|| corrected(&rooms.assembly, &rooms.connectors, region.cause(), gap, time));
         let Some(corrected) = corrected else { break };
         let starts =
-            region.groups().iter().filter_map(|&leader| rooms.groups.by_leader[leader.index()].as_deref());
-        let latest = starts.map(|group| group.start).max().unwrap_or(time);
+            region.groups().iter().filter_map(|&leader| rooms.groups.by_leader()[leader.index()].as_deref());
+        let latest = starts.map(|group| group.start()).max().unwrap_or(time);
         if corrected <= latest {
             break;
         }
@@ -187,17 +187,17 @@ fn cut_group(
     source: CutBy,
 ) {
     let Some(mut group) = groups.take(leader) else { return };
-    let offset = time.since(group.start).max(0.0);
-    if offset < 0.5 * group.span {
+    let offset = time.since(group.start()).max(0.0);
+    if offset < 0.5 * group.span() {
         // The middle of the segment, at which the error was read, is not reached.
-        group.largest_error = 0.0;
+        group.forget_error();
     }
     // Along a step over the kink of a force dense output errs by more than the estimate of the step's error; a step that
     // ends just before the kink leads over it.
-    let is_switch = matches!(group.event, Some((_, SegmentEnd::Switch)));
-    if offset != group.span || source == CutBy::Dense {
+    let is_switch = matches!(group.event(), Some((_, SegmentEnd::Switch)));
+    if offset != group.span() || source == CutBy::Dense {
         with_group(assembly, connectors, groups, &mut group, |dynamics, tools| {
-            let leads_over = is_switch && offset > dynamics.group.span;
+            let leads_over = is_switch && offset > dynamics.group.span();
             let is_exact = leads_over || (!is_switch && dynamics.is_dense_exact(offset));
             let by_dense = source == CutBy::Dense || is_exact;
             if by_dense || !dynamics.repeat_to(tools, offset) {
@@ -206,8 +206,8 @@ fn cut_group(
             dynamics.end_on_rows(tools);
         });
     }
-    for (place, &body) in group.bodies.iter().enumerate() {
-        let state = body_state(&group.end_state, group.bodies.len(), place);
+    for (place, &body) in group.bodies().iter().enumerate() {
+        let state = body_state(group.end_state(), group.bodies().len(), place);
         assembly.flyer_mut(body).fly_from(time, state);
     }
     put_group(assembly, connectors, groups, group);
@@ -221,10 +221,10 @@ fn strayed<'a>(
     time: Time,
 ) -> impl Iterator<Item = BodyId> + 'a {
     let allowed = assembly.settings().tolerances.accuracy;
-    let groups = region.groups().iter().filter_map(|&leader| groups.by_leader[leader.index()].as_deref());
+    let groups = region.groups().iter().filter_map(|&leader| groups.by_leader()[leader.index()].as_deref());
     groups.flat_map(move |group| {
-        let offset = time.since(group.start).max(0.0);
-        let places = group.bodies.iter().zip(&group.paths);
+        let offset = time.since(group.start()).max(0.0);
+        let places = group.bodies().iter().zip(group.paths());
         places.filter_map(move |(&body, path)| {
             let [x, y, angle] = [0, 1, 2].map(|k: usize| path[k].value_at(offset));
             let state = assembly.flyer(body).unwound_at(time);

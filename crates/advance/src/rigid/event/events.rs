@@ -79,7 +79,7 @@ pub(crate) fn handle_contact(
 
 /// Handles the end of a group's segment, natural or early.
 pub(crate) fn handle_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
-    if group_of(&rooms.assembly, &rooms.groups, leader).is_some_and(|group| group.look.is_some()) {
+    if group_of(&rooms.assembly, &rooms.groups, leader).is_some_and(|group| group.look().is_some()) {
         look_further(
             &mut rooms.assembly,
             &mut rooms.connectors,
@@ -89,7 +89,7 @@ pub(crate) fn handle_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Adva
         );
         return Ok(());
     }
-    if group_of(&rooms.assembly, &rooms.groups, leader).is_some_and(|group| group.event.is_none()) {
+    if group_of(&rooms.assembly, &rooms.groups, leader).is_some_and(|group| group.event().is_none()) {
         return extend_naturally(rooms, leader);
     }
     with_work(rooms, Cause::Other, |rooms, work| handle_group_with(rooms, leader, work))
@@ -98,15 +98,15 @@ pub(crate) fn handle_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Adva
 fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) -> Result<(), AdvanceError> {
     let Some(group) = group_of(&rooms.assembly, &rooms.groups, leader) else { return Ok(()) };
     work.seeds.clear();
-    work.seeds.extend(&group.bodies);
-    let Some((_, end)) = group.event else { return Ok(()) };
+    work.seeds.extend(group.bodies());
+    let Some((_, end)) = group.event() else { return Ok(()) };
     match end {
         SegmentEnd::Release(row) => {
-            if let Some(touch) = group.rows[row].touch() {
+            if let Some(touch) = group.rows()[row].touch() {
                 work.region.set_cause(Cause::Released(touch));
             }
-            let source = group.rows[row].source;
-            if group.made == rooms.assembly.now() {
+            let source = group.rows()[row].source;
+            if group.made() == rooms.assembly.now() {
                 rooms.zeno.note_pull(rooms.assembly.now());
             }
             if let RowSource::Connector(id, side @ (0 | 1)) = source {
@@ -114,7 +114,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
             }
             handle_change(rooms, work)
         }
-        SegmentEnd::Change(row) => match (group.rows[row].touch(), group.rows[row].source) {
+        SegmentEnd::Change(row) => match (group.rows()[row].touch(), group.rows()[row].source) {
             (_, RowSource::Connector(id, _)) => pass_joint(rooms, work, id),
             (touch, RowSource::Contact(_)) => {
                 let left = touch.filter(|&touch| leaves(&rooms.assembly, &rooms.connectors, touch));
@@ -129,7 +129,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
         },
         SegmentEnd::Sink(row) => {
             // A contact that was touched without force has sunk.
-            let Some(touch) = group.idle[row].touch() else { return Ok(()) };
+            let Some(touch) = group.idle()[row].touch() else { return Ok(()) };
             work.region.set_cause(Cause::Fired(touch));
             handle_impact(rooms, work)
         }
@@ -141,16 +141,16 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
 fn extend_naturally(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
     let_go(rooms, leader);
     continue_group(rooms, leader)?;
-    let mut bodies = std::mem::take(&mut rooms.groups.extended);
-    bodies.clear();
-    bodies
-        .extend(group_of(&rooms.assembly, &rooms.groups, leader).into_iter().flat_map(|group| &group.bodies));
+    let mut bodies = rooms.groups.take_extended();
+    bodies.extend(
+        group_of(&rooms.assembly, &rooms.groups, leader).into_iter().flat_map(|group| group.bodies()),
+    );
     for &body in &bodies {
         rooms.searching().renew_stay(body);
     }
     rooms.searching().predict_all_of(&bodies, false);
     rooms.searching().search_ropes_on(&bodies);
-    rooms.groups.extended = bodies;
+    rooms.groups.put_extended(bodies);
     Ok(())
 }
 

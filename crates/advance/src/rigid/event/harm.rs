@@ -105,7 +105,7 @@ mod tests {
         let EventWork { region, settling, .. } = &mut *work;
         collect_region(&rooms.view(), region, &[disc], rooms.assembly.now());
         measure_touches(&rooms.assembly, region);
-        let mut stage = std::mem::take(&mut rooms.groups.stage);
+        let mut stage = rooms.groups.take_stage();
         settling.set_likely([None].into_iter());
         settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false).expect("it rests");
         settling.held_mut()[0].1.gap += lifted;

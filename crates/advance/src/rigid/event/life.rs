@@ -11,8 +11,7 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::event::rails::{note_hints, note_ways, renew_hints};
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::attempt::StepFailure;
-use crate::rigid::group::brief::Past;
-use crate::rigid::group::dynamics::{body_state, set_body_state};
+use crate::rigid::group::dynamics::body_state;
 use crate::rigid::group::groups::{Groups, part, put_group, with_group};
 use crate::rigid::group::state::Group;
 use crate::rigid::region::touching::Region;
@@ -28,33 +27,32 @@ pub(crate) fn dissolve(rooms: &mut Rooms, leader: BodyId) {
     note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader);
     let Some(mut group) = rooms.groups.take(leader) else { return };
     book_works(&mut rooms.books, &group);
-    if group.rows.iter().any(|row| !row.bilateral) {
+    if group.rows().iter().any(|row| !row.bilateral) {
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             dynamics.evaluate_end()
         });
         note_ends(&rooms.assembly, &rooms.connectors, &rooms.groups, &mut rooms.books, &group);
     }
-    for &body in &group.bodies {
+    for &body in group.bodies() {
         rooms.assembly.note_sunk(body, group.depth());
-        rooms.groups.past_of[body.index()] = Past::of(&group, rooms.assembly.now());
+        rooms.groups.note_past(body, &group, rooms.assembly.now());
         rooms.books.note_backup();
     }
     part(&mut rooms.assembly, &mut rooms.connectors, &group);
     rooms.agenda.clear(Source::Group(leader));
-    group.clear();
-    rooms.groups.pool.push(group);
+    rooms.groups.recycle(group);
 }
 
 fn book_works(books: &mut Books, group: &Group) {
-    if group.rows.iter().any(|row| row.bilateral) {
-        books.note_connector_error(group.largest_error);
+    if group.rows().iter().any(|row| row.bilateral) {
+        books.note_connector_error(group.largest_error());
     }
-    if let Some(gap) = group.least_gap {
+    if let Some(gap) = group.least_gap() {
         books.note_gap(gap);
     }
-    books.book_projection(group.projected);
+    books.book_projection(group.projected());
     let first = 2 * group.velocities();
-    for (&work, &value) in group.works.iter().zip(&group.end_state[first..]) {
+    for (&work, &value) in group.works().iter().zip(&group.end_state()[first..]) {
         books.book_work(work, value);
     }
 }
@@ -93,35 +91,23 @@ pub(crate) fn drop_group(
 /// Starts a group's first segment from the states of its bodies.
 pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
     let Some(mut group) = rooms.groups.take(leader) else { return Ok(()) };
-    (group.start, group.made) = (rooms.assembly.now(), rooms.assembly.now());
-    group.is_patient = has_pulled(&rooms.zeno, rooms.assembly.now());
-    let count = group.bodies.len();
-    let dimension = group.dimension();
-    let mut inertias = std::mem::take(&mut rooms.groups.inertias);
-    inertias.clear();
-    inertias.extend(group.bodies.iter().map(|&body| rooms.assembly.inertia(body)));
-    group.find_sides();
-    group.held.set_structure(&inertias, &group.sides);
-    rooms.groups.inertias = inertias;
-    // The projection acts on the end of a segment: a segment of no length ends here.
-    group.end_state.clear();
-    group.end_state.resize(dimension, 0.0);
     let now = rooms.assembly.now();
-    for place in 0..count {
-        book_damping(&mut rooms.assembly, &mut rooms.books, group.bodies[place], now);
-        let state = rooms.assembly.flyer(group.bodies[place]).unwound_at(rooms.assembly.now());
-        set_body_state(&mut group.end_state, count, place, &state);
+    let mut inertias = rooms.groups.take_inertias();
+    inertias.extend(group.bodies().iter().map(|&body| rooms.assembly.inertia(body)));
+    group.prepare(now, has_pulled(&rooms.zeno, now), &inertias);
+    rooms.groups.put_inertias(inertias);
+    for place in 0..group.bodies().len() {
+        let body = group.bodies()[place];
+        book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
+        group.set_end(place, &rooms.assembly.flyer(body).unwound_at(now));
     }
-    group.span = 0.0;
-    group.projected = 0.0;
     with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
         dynamics.soften_dependent();
         dynamics.end_on_rows(tools);
         dynamics.leave_lifted();
         dynamics.lower_idle();
     });
-    rooms.books.book_projection(std::mem::take(&mut group.projected));
-    std::mem::swap(&mut group.state, &mut group.end_state);
+    rooms.books.book_projection(group.set_off());
     with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
         dynamics.find_tree_and_loops(tools.settings);
         dynamics.set_out();
@@ -137,32 +123,23 @@ pub(crate) fn continue_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Ad
     note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader);
     let Some(mut group) = rooms.groups.take(leader) else { return Ok(()) };
     book_works(&mut rooms.books, &group);
-    group.start = group.end();
-    group.end_brief();
-    group.choose_stiffness(rooms.assembly.settings().method);
-    let first_work = 2 * group.velocities();
-    let group_mut = &mut *group;
-    std::mem::swap(&mut group_mut.state, &mut group_mut.end_state);
-    std::mem::swap(&mut group_mut.rates, &mut group_mut.end_rates);
-    std::mem::swap(&mut group_mut.forces, &mut group_mut.end_forces);
-    group_mut.state[first_work..].fill(0.0);
+    group.turn_over(rooms.assembly.settings().method);
     renew_hints(&rooms.assembly, &mut rooms.connectors, &mut group);
     extend_group(rooms, group)
 }
 
 /// Extends a group by a segment and puts it back.
 fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceError> {
-    note_hints(&rooms.assembly, &mut rooms.connectors, &group.rows);
+    note_hints(&rooms.assembly, &mut rooms.connectors, group.rows());
     let leader = group.leader();
     skip_dense(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader);
-    let next_step = group.next_step;
+    let next_step = group.next_step();
     let mut outcome =
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             extend_watched(dynamics, tools)
         });
-    if outcome.is_err() && group.stiffness.is_stiff() {
-        group.next_step = next_step;
-        group.leave_stiffness(rooms.assembly.settings().method);
+    if outcome.is_err() && group.stiffness().is_stiff() {
+        group.retry_explicitly(next_step, rooms.assembly.settings().method);
         outcome = with_group(
             &rooms.assembly,
             &rooms.connectors,
@@ -180,7 +157,7 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
     note_pace(&rooms.assembly, &mut rooms.zeno, &group);
     note_kinetic_energy(&rooms.assembly, &mut rooms.books, &group);
     rooms.agenda.set(Source::Group(leader), group.due());
-    if group.is_unwatched {
+    if group.is_unwatched() {
         defer_dense(&mut rooms.groups, leader);
     } else {
         fly_along(&mut rooms.assembly, &group);
@@ -205,23 +182,23 @@ pub(crate) fn look_further(
 
 /// Forgets a group that cannot be stepped: its bodies are where its last segment ended.
 fn give_up(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) {
-    for (place, &body) in group.bodies.iter().enumerate() {
-        let state = body_state(&group.state, group.bodies.len(), place);
-        assembly.flyer_mut(body).fly_from(group.start, state);
+    for (place, &body) in group.bodies().iter().enumerate() {
+        let state = body_state(group.state(), group.bodies().len(), place);
+        assembly.flyer_mut(body).fly_from(group.start(), state);
     }
     part(assembly, connectors, group);
 }
 
 /// Sets the bodies of a group on its dense output.
 fn fly_along(assembly: &mut Assembly, group: &Group) {
-    let span = group.end().since(group.start);
-    for (&body, paths) in group.bodies.iter().zip(&group.paths) {
-        assembly.flyer_mut(body).follow(group.start, paths, span);
+    let span = group.end().since(group.start());
+    for (&body, paths) in group.bodies().iter().zip(group.paths()) {
+        assembly.flyer_mut(body).follow(group.start(), paths, span);
     }
 }
 
 fn step_error(assembly: &Assembly, group: &Group, failure: StepFailure) -> AdvanceError {
-    let (time, bodies) = (group.start.seconds(), group.bodies.clone());
+    let (time, bodies) = (group.start().seconds(), group.bodies().to_vec());
     let laws = names_of_laws(assembly, group);
     match failure {
         StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
@@ -236,11 +213,11 @@ fn step_error(assembly: &Assembly, group: &Group, failure: StepFailure) -> Advan
 /// Two bodies whose centres are at a given distance [m], among those that a law of a group names together; `None`
 /// if there are none. Where forces vary over that length, these are to blame.
 fn so_far_apart(assembly: &Assembly, group: &Group, length: f64) -> Option<[BodyId; 2]> {
-    let center = |body: BodyId| match group.bodies.binary_search(&body) {
-        Ok(place) => body_state(&group.state, group.bodies.len(), place).position,
-        Err(_) => assembly.moving_at(body, group.start).pose.position,
+    let center = |body: BodyId| match group.bodies().binary_search(&body) {
+        Ok(place) => body_state(group.state(), group.bodies().len(), place).position,
+        Err(_) => assembly.moving_at(body, group.start()).pose.position,
     };
-    let bodies = group.laws.iter().map(|&law| assembly.laws().all[law].bodies());
+    let bodies = group.laws().iter().map(|&law| assembly.laws().all[law].bodies());
     let mut pairs = bodies
         .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
         .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));
@@ -255,30 +232,28 @@ pub(crate) fn is_unwatched(
     group: &Group,
 ) -> bool {
     let mechanism = mechanism(assembly, connectors);
-    let mut tied = group.bodies.iter().flat_map(|&body| connectors.of(body));
-    group.bodies.iter().all(|body| search.loners()[body.index()])
+    let mut tied = group.bodies().iter().flat_map(|&body| connectors.of(body));
+    group.bodies().iter().all(|body| search.loners()[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
-        && group.rows.iter().all(|row| row.bilateral && !mechanism.can_change(row))
-        && group.laws.iter().all(|&law| assembly.laws().all[law].switches() == 0)
+        && group.rows().iter().all(|row| row.bilateral && !mechanism.can_change(row))
+        && group.laws().iter().all(|&law| assembly.laws().all[law].switches() == 0)
 }
 
 /// Postpones the dense output of the group with this leader.
 fn defer_dense(groups: &mut Groups, leader: BodyId) {
-    groups.waiting = Some(leader);
+    groups.defer(leader);
 }
 
 /// Drops the postponed dense output of a group that goes on without having been asked for it; makes that of another
 /// group.
 fn skip_dense(assembly: &mut Assembly, connectors: &mut Connectors, groups: &mut Groups, leader: BodyId) {
-    if groups.waiting == Some(leader) {
-        groups.waiting = None;
-    }
+    groups.skip(leader);
     complete_dense(assembly, connectors, groups);
 }
 
 /// Makes the postponed dense output, if there is any: then all motions can be evaluated.
 pub(crate) fn complete_dense(assembly: &mut Assembly, connectors: &mut Connectors, groups: &mut Groups) {
-    let Some(mut group) = groups.waiting.take().and_then(|leader| groups.take(leader)) else {
+    let Some(mut group) = groups.take_waiting() else {
         return;
     };
     with_group(assembly, connectors, groups, &mut group, |dynamics, tools| dynamics.complete(tools));

@@ -99,14 +99,14 @@ fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &
 fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking, region: &Region) -> f64 {
     let mut energy = 0.0;
     for &body in region.bodies() {
-        groups.stage.movings[body.index()] = assembly.flyer(body).moving_at(assembly.now());
+        groups.place(body, assembly.flyer(body).moving_at(assembly.now()));
         let flyer = assembly.flyer(body);
-        let position = groups.stage.movings[body.index()].pose.position;
+        let position = groups.stage().movings()[body.index()].pose.position;
         energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
     }
     let mut laws = sinking.take_laws();
     assembly.laws().list(region.bodies(), &mut laws);
-    let now = Snapshot::of_unwound(assembly.now().seconds(), &groups.stage.movings, assembly.flyers());
+    let now = Snapshot::of_unwound(assembly.now().seconds(), groups.stage().movings(), assembly.flyers());
     let of_laws = laws.iter().filter_map(|&law| assembly.laws().all[law].potential(&now)).sum::<f64>();
     sinking.put_laws(laws);
     energy + of_laws

@@ -8,6 +8,7 @@
 
 pub(super) mod changing;
 pub(super) mod corners;
+pub(super) mod coupling;
 pub(super) mod cutting;
 pub(super) mod events;
 pub(super) mod going_on;

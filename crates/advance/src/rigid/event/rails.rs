@@ -18,13 +18,11 @@ pub(crate) fn note_ways(
     leader: BodyId,
 ) {
     for place in 0.. {
-        let group = groups.by_leader[leader.index()].as_deref();
-        let Some(id) = group.and_then(|group| group.stops.get(place)).map(|stop| stop.id) else { break };
+        let group = groups.by_leader()[leader.index()].as_deref();
+        let Some(id) = group.and_then(|group| group.stops().get(place)).map(|stop| stop.id) else { break };
         connectors.note_left(assembly, id, assembly.now());
-        if let Some(group) = groups.by_leader[leader.index()].as_deref_mut() {
-            group.stops[place].is_noted = true;
-            connectors.stop_following(id);
-        }
+        groups.note_stop(leader, place);
+        connectors.stop_following(id);
     }
 }
 
@@ -56,31 +54,28 @@ pub(crate) fn note_rails(assembly: &Assembly, connectors: &mut Connectors, regio
 /// Notes the places on their rails of a group's points at its start: laps of an arc are told apart by the last
 /// place. Rows on splines were followed to it.
 pub(crate) fn renew_hints(assembly: &Assembly, connectors: &mut Connectors, group: &mut Group) {
-    let count = group.bodies.len();
-    let Group { bodies, state, rows, stops, .. } = group;
-    let found = |id: ConnectorId, hint: Option<&RailHint>| -> Option<RailHint> {
+    let found = |bodies: &[BodyId], state: &[f64], id: ConnectorId, hint: Option<&RailHint>| {
         let connector = connectors.connector(id);
         let (anchor, _) = connector.anchors();
         let (path, place) = (connector.path()?, bodies.binary_search(&anchor.body).ok()?);
-        let point = body_state(state, count, place).pose().point_to_world(anchor.point);
+        let point = body_state(state, bodies.len(), place).pose().point_to_world(anchor.point);
         Some(path.hint_near(point, hint))
     };
-    for stop in stops {
-        stop.is_noted = false;
-        let left = connectors.states()[stop.id.index()].hint().and_then(|hint| hint.before_stop());
-        // Ropes that are watched like stops have no hints.
-        let hint = found(stop.id, stop.hint.as_ref()).map(|hint| hint.with_before_stop(left));
-        stop.hint = hint.map(|hint| if connectors.is_led(stop.id) { hint.staying() } else { hint });
-    }
-    let mechanism = mechanism(assembly, connectors);
-    for row in rows.iter_mut().filter(|row| !mechanism.is_in_corner(row)) {
-        if let RowSource::Connector(id, _) = row.source
-            && connectors.connector(id).path().is_some_and(|path| !path.knots().is_empty())
-        {
-            row.hint = found(id, row.hint.as_ref()).map(RailHint::staying);
+    // Ropes that are watched like stops have no hints.
+    let of_stop = |id: ConnectorId, hint: Option<RailHint>| {
+        let left = connectors.states()[id.index()].hint().and_then(|hint| hint.before_stop());
+        let hint = hint.map(|hint| hint.with_before_stop(left));
+        hint.map(|hint| if connectors.is_led(id) { hint.staying() } else { hint })
+    };
+    let has_knots = |row: &HeldRow| match row.source {
+        RowSource::Connector(id, _) => {
+            connectors.connector(id).path().is_some_and(|path| !path.knots().is_empty())
         }
-    }
-    note_hints(assembly, connectors, rows);
+        RowSource::Contact(_) => false,
+    };
+    let mechanism = mechanism(assembly, connectors);
+    group.renew_hints(|row| !mechanism.is_in_corner(row) && has_knots(row), found, of_stop);
+    note_hints(assembly, connectors, group.rows());
 }
 
 /// Notes the hints of rows for their rails, except for points that rest in a corner.

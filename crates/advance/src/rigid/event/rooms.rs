@@ -8,6 +8,7 @@ use crate::rigid::bodies::laws::Laws;
 use crate::rigid::books::all::Books;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::pairs::Pairs;
+use crate::rigid::event::coupling::Coupling;
 use crate::rigid::event::members::Members;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::Groups;
@@ -35,6 +36,8 @@ pub(crate) struct Rooms {
     pub(crate) agenda: Agenda,
     /// Members of the groups that are being made.
     pub(crate) members: Members,
+    /// Which places of a region share their steps.
+    pub(crate) coupling: Coupling,
     /// Buffers of an event; taken out while one is handled.
     pub(crate) work: Option<Box<EventWork>>,
 }
@@ -62,6 +65,7 @@ impl Rooms {
             zeno: Zeno::new(count),
             sinking: Sinking::default(),
             members: Members::default(),
+            coupling: Coupling::default(),
             work: None,
             assembly: Assembly::new(flyers, laws, settings, start),
         }

@@ -33,7 +33,7 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
 }
 
 fn settle_region(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
-    let mut stage = std::mem::take(&mut rooms.groups.stage);
+    let mut stage = rooms.groups.take_stage();
     work.settling.note_pull(has_pulled(&rooms.zeno, rooms.assembly.now()));
     let outcome = settle(
         &rooms.view(),
@@ -43,6 +43,6 @@ fn settle_region(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Re
         rooms.assembly.now(),
         with_hops,
     );
-    rooms.groups.stage = stage;
+    rooms.groups.put_stage(stage);
     outcome
 }

@@ -25,10 +25,10 @@ const BRIEF_GROWTH: f64 = 1.9;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Past {
     /// Length [s] of the next step that was proposed, by the method asked for.
-    pub(crate) step: Option<f64>,
+    pub(super) step: Option<f64>,
     /// Time [s] for which the group lasted.
-    pub(crate) lasted: f64,
-    pub(crate) stiffness: Stiffness,
+    pub(super) lasted: f64,
+    pub(super) stiffness: Stiffness,
 }
 
 impl Past {
@@ -66,5 +66,26 @@ impl Group {
             self.next_step = self.full_step;
             self.accepted = None;
         }
+    }
+}
+
+impl Past {
+    // getters of Past
+    /// Time [s] for which the group lasted.
+    #[inline]
+    pub(crate) fn lasted(&self) -> f64 {
+        self.lasted
+    }
+
+    /// Length [s] of the next step that was proposed, by the method asked for.
+    #[inline]
+    pub(crate) fn step(&self) -> Option<f64> {
+        self.step
+    }
+
+    /// The stiffness.
+    #[inline]
+    pub(crate) fn stiffness(&self) -> Stiffness {
+        self.stiffness
     }
 }

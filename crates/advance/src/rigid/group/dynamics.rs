@@ -25,65 +25,113 @@ pub(crate) const LEVEL: f64 = 1e-12;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stage {
     /// States of all bodies; those of movable ones are valid only while their group is evaluated.
-    pub(crate) movings: Vec<Moving>,
+    pub(super) movings: Vec<Moving>,
     /// Sums of the force laws' wrenches, one for each body.
-    wrenches: Vec<Wrench>,
+    pub(super) wrenches: Vec<Wrench>,
     /// The wrenches of one law.
-    single: Vec<Wrench>,
+    pub(super) single: Vec<Wrench>,
     /// Accelerations of the group's bodies (x, y, angle).
-    pub(crate) accelerations: Vec<[f64; 3]>,
+    pub(super) accelerations: Vec<[f64; 3]>,
     /// Jacobian of each row: three entries for the primary body, three for the normal body.
-    pub(crate) jacobians: Vec<[f64; 6]>,
+    pub(super) jacobians: Vec<[f64; 6]>,
     /// Right-hand side b of A f + b = 0 for each row: its acceleration [m/s^2] without forces of rows; during a
     /// projection its gap error [m] or rate [m/s].
-    pub(crate) offsets: Vec<f64>,
+    pub(super) offsets: Vec<f64>,
     /// Forces of the rows [N].
-    pub(crate) forces: Vec<f64>,
+    pub(super) forces: Vec<f64>,
     /// M^-1 J^T f of each body (x, y, angle).
-    pub(crate) changes: Vec<[f64; 3]>,
+    pub(super) changes: Vec<[f64; 3]>,
     /// Sum of the sizes of all rows' forces on each body [N].
-    pub(crate) gross: Vec<f64>,
+    pub(super) gross: Vec<f64>,
     /// True for each body whose acceleration is rounding.
-    levels: Vec<bool>,
+    pub(super) levels: Vec<bool>,
     /// Force [N] below which each row counts as without force.
-    pub(crate) least: Vec<f64>,
+    pub(super) least: Vec<f64>,
     /// The least and the largest force [N] of each row at the stages of the last step.
-    pub(crate) force_ranges: Vec<[f64; 2]>,
+    pub(super) force_ranges: Vec<[f64; 2]>,
     /// Evaluations note `force_ranges`.
-    pub(crate) asks_force_ranges: bool,
+    pub(super) asks_force_ranges: bool,
     /// Largest error [m] of a held gap where forces of rows were last found.
-    pub(crate) gap_error: f64,
+    pub(super) gap_error: f64,
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, as last noted.
-    pub(crate) free_acceleration: f64,
+    pub(super) free_acceleration: f64,
     /// Evaluations note `free_acceleration` and `force_length`.
-    pub(crate) asks_free_acceleration: bool,
+    pub(super) asks_free_acceleration: bool,
     /// Length [m] over which the forces of laws vary, as last noted.
-    pub(crate) force_length: f64,
+    pub(super) force_length: f64,
     /// The same length of the laws that name one body: such a law depends on where the body is.
-    pub(crate) field_length: f64,
+    pub(super) field_length: f64,
     /// Rates of rows during a projection [m/s].
-    pub(crate) rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
     /// A state along the segment.
-    pub(crate) trial: Vec<f64>,
+    pub(super) trial: Vec<f64>,
     /// Rates of `trial`.
-    pub(crate) trial_rates: Vec<f64>,
+    pub(super) trial_rates: Vec<f64>,
     /// A state moved onto the held rows.
-    pub(crate) on_rows: Vec<f64>,
+    pub(super) on_rows: Vec<f64>,
     /// Bounds on the motion of the group's bodies along the segment.
-    pub(crate) bounds: Vec<MotionBounds>,
+    pub(super) bounds: Vec<MotionBounds>,
     /// Places in the group of the bodies that are watched along the segment.
-    pub(crate) watched: Vec<u32>,
+    pub(super) watched: Vec<u32>,
     /// Values of watched functions at the nodes.
-    pub(crate) samples: Samples,
+    pub(super) samples: Samples,
     /// Values of watched functions at the earliest event found so far.
-    pub(crate) there: Vec<f64>,
+    pub(super) there: Vec<f64>,
     /// Number of evaluations so far.
-    pub(crate) evaluations: u64,
+    pub(super) evaluations: u64,
     /// Number of solves of held rows so far.
-    pub(crate) solves: u64,
+    pub(super) solves: u64,
 }
 
 impl Stage {
+    /// Sets the motion of a body.
+    pub(crate) fn place(&mut self, body: BodyId, moving: Moving) {
+        self.movings[body.index()] = moving;
+    }
+
+    /// Lends out the buffers of watched functions.
+    pub(crate) fn lend_samples(&mut self) -> Samples {
+        std::mem::take(&mut self.samples)
+    }
+
+    /// Takes back the buffers of watched functions.
+    pub(crate) fn take_back_samples(&mut self, samples: Samples) {
+        self.samples = samples;
+    }
+
+    /// Lends out the buffer of values at the earliest event.
+    pub(crate) fn lend_there(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.there)
+    }
+
+    /// Takes that buffer back.
+    pub(crate) fn take_back_there(&mut self, there: Vec<f64>) {
+        self.there = there;
+    }
+
+    /// Sets the force [N] below which each row counts as without force, from the load [N] on each body beside its rows:
+    /// `share` of that on the less loaded of the row's bodies, with the forces of all its rows.
+    pub(crate) fn set_least_forces(&mut self, share: f64, group: &Group, loads: impl Iterator<Item = f64>) {
+        self.gross.clear();
+        self.gross.extend(loads);
+        for (index, sides) in group.sides.iter().enumerate() {
+            let force = group.forces[index].abs().max(group.end_forces[index].abs());
+            sides.iter().flatten().for_each(|&place| self.gross[place as usize] += force);
+        }
+        let Self { gross, least, .. } = self;
+        least.clear();
+        least.extend(group.sides.iter().map(|sides| {
+            let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
+            share * loads.fold(f64::INFINITY, f64::min)
+        }));
+    }
+
+    /// Sets bounds on the motion of bodies along the segment.
+    pub(crate) fn set_bounds(&mut self, bounds: impl Iterator<Item = MotionBounds>) {
+        self.bounds.clear();
+        self.bounds.extend(bounds);
+    }
+
     pub(crate) fn new(movings: Vec<Moving>) -> Self {
         let count = movings.len();
         Self {
@@ -534,5 +582,62 @@ impl Dynamics<'_> {
             self.physics.mechanism.measure_next(row, &self.stage.movings, &mut twin).gap - row.gap
         });
         gaps.fold(0.0, |most, error| most.max(error.abs()))
+    }
+}
+
+impl Stage {
+    // getters of Stage
+    /// Accelerations of the group's bodies (x, y, angle).
+    #[inline]
+    pub(crate) fn accelerations(&self) -> &[[f64; 3]] {
+        &self.accelerations
+    }
+
+    /// Bounds on the motion of the group's bodies along the segment.
+    #[inline]
+    pub(crate) fn bounds(&self) -> &[MotionBounds] {
+        &self.bounds
+    }
+
+    /// Number of evaluations so far.
+    #[inline]
+    pub(crate) fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// The least and the largest force [N] of each row at the stages of the last step.
+    #[inline]
+    pub(crate) fn force_ranges(&self) -> &[[f64; 2]] {
+        &self.force_ranges
+    }
+
+    /// Forces of the rows [N].
+    #[inline]
+    pub(crate) fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// Largest error [m] of a held gap where forces of rows were last found.
+    #[inline]
+    pub(crate) fn gap_error(&self) -> f64 {
+        self.gap_error
+    }
+
+    /// Force [N] below which each row counts as without force.
+    #[inline]
+    pub(crate) fn least(&self) -> &[f64] {
+        &self.least
+    }
+
+    /// States of all bodies; those of movable ones are valid only while their group is evaluated.
+    #[inline]
+    pub(crate) fn movings(&self) -> &[Moving] {
+        &self.movings
+    }
+
+    /// Number of solves of held rows so far.
+    #[inline]
+    pub(crate) fn solves(&self) -> u64 {
+        self.solves
     }
 }

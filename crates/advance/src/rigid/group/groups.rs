@@ -3,13 +3,13 @@
 use crate::ode::Method;
 use crate::rigid::bodies::assembly::{Assembly, Shared};
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::forest::Forest;
 use crate::rigid::group::brief::Past;
 use crate::rigid::group::dynamics::{Dynamics, Stage};
 use crate::rigid::group::physics::physics;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::stepping::Steppers;
 use crate::rigid::group::tools::Tools;
+use crate::time::Time;
 use halfgap_collision::{BodyId, Moving};
 use halfgap_contact::InverseInertia;
 
@@ -17,30 +17,118 @@ use halfgap_contact::InverseInertia;
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
     /// Group of each leader.
-    pub(crate) by_leader: Vec<Option<Box<Group>>>,
+    pub(super) by_leader: Vec<Option<Box<Group>>>,
     /// Cleared groups to be used again.
     #[expect(clippy::vec_box, reason = "groups go from here to `by_leader` without being copied")]
-    pub(crate) pool: Vec<Box<Group>>,
+    pub(super) pool: Vec<Box<Group>>,
     /// Steps and depth of each body's last group.
-    pub(crate) past_of: Vec<Past>,
-    /// Places of a region, in sets that share their steps.
-    pub(crate) coupled: Forest,
-    /// True for places of a region that need an integrator.
-    pub(crate) integrated: Vec<bool>,
+    pub(super) past_of: Vec<Past>,
     /// Leader of the group whose dense output is deferred until it is read.
-    pub(crate) waiting: Option<BodyId>,
+    pub(super) waiting: Option<BodyId>,
     /// Leaders of the groups that were made last.
-    pub(crate) made: Vec<BodyId>,
+    pub(super) made: Vec<BodyId>,
     /// Bodies of the group that was extended last.
-    pub(crate) extended: Vec<BodyId>,
-    pub(crate) stage: Stage,
-    pub(crate) steppers: Steppers,
-    pub(crate) error_scales: Vec<f64>,
+    pub(super) extended: Vec<BodyId>,
+    pub(super) stage: Stage,
+    pub(super) steppers: Steppers,
+    pub(super) error_scales: Vec<f64>,
     /// Inertias of the bodies of a group that starts.
-    pub(crate) inertias: Vec<InverseInertia>,
+    pub(super) inertias: Vec<InverseInertia>,
 }
 
 impl Groups {
+    /// Begins the making of groups.
+    pub(crate) fn begin_making(&mut self) {
+        self.made.clear();
+    }
+
+    /// Notes the leader of a group that has been made.
+    pub(crate) fn note_made(&mut self, leader: BodyId) {
+        self.made.push(leader);
+    }
+
+    /// An empty group.
+    pub(crate) fn take_empty(&mut self) -> Box<Group> {
+        let mut group = self.pool.pop().unwrap_or_default();
+        group.clear();
+        group
+    }
+
+    /// Keeps a group that has ended, to be used again.
+    pub(crate) fn recycle(&mut self, mut group: Box<Group>) {
+        group.clear();
+        self.pool.push(group);
+    }
+
+    /// Notes the experience with the group of a body, which ends now.
+    pub(crate) fn note_past(&mut self, body: BodyId, group: &Group, now: Time) {
+        self.past_of[body.index()] = Past::of(group, now);
+    }
+
+    /// Takes out the buffer of inertias, emptied.
+    pub(crate) fn take_inertias(&mut self) -> Vec<InverseInertia> {
+        let mut inertias = std::mem::take(&mut self.inertias);
+        inertias.clear();
+        inertias
+    }
+
+    /// Puts back the buffer of inertias.
+    pub(crate) fn put_inertias(&mut self, inertias: Vec<InverseInertia>) {
+        self.inertias = inertias;
+    }
+
+    /// Takes out the buffer for the bodies of a group that is extended, emptied.
+    pub(crate) fn take_extended(&mut self) -> Vec<BodyId> {
+        let mut extended = std::mem::take(&mut self.extended);
+        extended.clear();
+        extended
+    }
+
+    /// Puts back that buffer.
+    pub(crate) fn put_extended(&mut self, extended: Vec<BodyId>) {
+        self.extended = extended;
+    }
+
+    /// Takes out the buffers of evaluations.
+    pub(crate) fn take_stage(&mut self) -> Stage {
+        std::mem::take(&mut self.stage)
+    }
+
+    /// Puts back the buffers of evaluations.
+    pub(crate) fn put_stage(&mut self, stage: Stage) {
+        self.stage = stage;
+    }
+
+    /// Sets the motion of a body for evaluations.
+    pub(crate) fn place(&mut self, body: BodyId, moving: Moving) {
+        self.stage.place(body, moving);
+    }
+
+    /// Postpones the dense output of the group with this leader.
+    pub(crate) fn defer(&mut self, leader: BodyId) {
+        self.waiting = Some(leader);
+    }
+
+    /// Drops the postponed dense output of the group with this leader, if it is that.
+    pub(crate) fn skip(&mut self, leader: BodyId) {
+        if self.waiting == Some(leader) {
+            self.waiting = None;
+        }
+    }
+
+    /// Takes out the group whose dense output is postponed, if there is one.
+    pub(crate) fn take_waiting(&mut self) -> Option<Box<Group>> {
+        let leader = self.waiting.take()?;
+        self.take(leader)
+    }
+
+    /// Notes that the place to which the point of a stop has come is known, of the group with this leader.
+    pub(crate) fn note_stop(&mut self, leader: BodyId, place: usize) {
+        if let Some(group) = self.by_leader[leader.index()].as_deref_mut() {
+            group.note_stop(place);
+        }
+    }
+
     /// No groups of bodies that move like this.
     pub(crate) fn new(movings: Vec<Moving>, method: Method) -> Self {
         let count = movings.len();
@@ -48,8 +136,6 @@ impl Groups {
             by_leader: (0..count).map(|_| None).collect(),
             past_of: vec![Past::default(); count],
             pool: Vec::new(),
-            coupled: Forest::default(),
-            integrated: Vec::new(),
             waiting: None,
             made: Vec::new(),
             inertias: Vec::new(),
@@ -110,5 +196,44 @@ pub(crate) fn part(assembly: &mut Assembly, connectors: &mut Connectors, group: 
     }
     for stop in &group.stops {
         connectors.unwatch(stop.id);
+    }
+}
+
+impl Groups {
+    // getters of Groups
+    /// Group of each leader.
+    #[inline]
+    pub(crate) fn by_leader(&self) -> &[Option<Box<Group>>] {
+        &self.by_leader
+    }
+
+    /// Leaders of the groups that were made last.
+    #[inline]
+    pub(crate) fn made(&self) -> &[BodyId] {
+        &self.made
+    }
+
+    /// Steps and depth of each body's last group.
+    #[inline]
+    pub(crate) fn past_of(&self) -> &[Past] {
+        &self.past_of
+    }
+
+    /// The pool.
+    #[inline]
+    pub(crate) fn pool(&self) -> &[Box<Group>] {
+        &self.pool
+    }
+
+    /// The stage.
+    #[inline]
+    pub(crate) fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Leader of the group whose dense output is deferred until it is read.
+    #[inline]
+    pub(crate) fn waiting(&self) -> Option<BodyId> {
+        self.waiting
     }
 }

@@ -39,94 +39,94 @@ pub(crate) enum SegmentEnd {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Group {
     /// Its bodies, ascending.
-    pub(crate) bodies: Vec<BodyId>,
+    pub(super) bodies: Vec<BodyId>,
     /// The held rows: independent ones of the contacts, and every row of the connectors.
-    pub(crate) rows: Vec<HeldRow>,
+    pub(super) rows: Vec<HeldRow>,
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
-    pub(crate) sides: Vec<[Option<u32>; 2]>,
+    pub(super) sides: Vec<[Option<u32>; 2]>,
     /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
-    pub(crate) idle: Vec<HeldRow>,
-    pub(crate) stops: Vec<Stop>,
+    pub(super) idle: Vec<HeldRow>,
+    pub(super) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
-    pub(crate) laws: Vec<usize>,
-    pub(crate) works: Vec<Work>,
-    pub(crate) held: HeldRows,
+    pub(super) laws: Vec<usize>,
+    pub(super) works: Vec<Work>,
+    pub(super) held: HeldRows,
     /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
-    pub(crate) tree: JointTree,
+    pub(super) tree: JointTree,
     /// Whether its connectors close a loop.
-    pub(crate) loops: Loops,
+    pub(super) loops: Loops,
     /// Kept shares of the rows of its loops, which tell of bifurcation points (`singular`).
-    pub(crate) kept: Kept,
+    pub(super) kept: Kept,
     /// Number of rows that depend on others all along, where such rows are soft and share their force.
-    pub(crate) dependent: usize,
+    pub(super) dependent: usize,
     /// Time at which its segment starts.
-    pub(crate) start: Time,
+    pub(super) start: Time,
     /// Length of the segment [s].
-    pub(crate) span: f64,
+    pub(super) span: f64,
     /// Position (x, y, angle) of each body, then velocities likewise, then works.
-    pub(crate) state: Vec<f64>,
+    pub(super) state: Vec<f64>,
     /// Rates of `state` at the start of the segment.
-    pub(crate) rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
     /// State at the end of the segment.
-    pub(crate) end_state: Vec<f64>,
+    pub(super) end_state: Vec<f64>,
     /// Rates at the end of the segment.
-    pub(crate) end_rates: Vec<f64>,
+    pub(super) end_rates: Vec<f64>,
     /// Force [N] of each row at the start of the segment.
-    pub(crate) forces: Vec<f64>,
+    pub(super) forces: Vec<f64>,
     /// Force [N] of each row at the end of the segment.
-    pub(crate) end_forces: Vec<f64>,
+    pub(super) end_forces: Vec<f64>,
     /// Another group was ended at the time at which this one was made, because a contact pulled from the start; here it
     /// may pull again.
-    pub(crate) is_patient: bool,
+    pub(super) is_patient: bool,
     /// Distance [m] by which each row had run off its features when that was first seen; 0 if it had not.
-    pub(crate) overrun: Vec<f64>,
+    pub(super) overrun: Vec<f64>,
     /// Force [N] by which each row pulled when that was first seen; 0 if it did not.
-    pub(crate) pulled: Vec<f64>,
+    pub(super) pulled: Vec<f64>,
     /// x, y and angle of each body along the segment.
-    pub(crate) paths: Vec<[SegmentPolynomial; 3]>,
+    pub(super) paths: Vec<[SegmentPolynomial; 3]>,
     /// Velocities of the bodies, in the order of the state, and then works [J], along the segment. The derivatives of
     /// `paths` are no substitute: they contain the displacement of the end by its projection, which is much over a
     /// short step.
-    pub(crate) rate_paths: Vec<SegmentPolynomial>,
+    pub(super) rate_paths: Vec<SegmentPolynomial>,
     /// Length of the next step to try [s]; `None` if nothing is known.
-    pub(crate) next_step: Option<f64>,
+    pub(super) next_step: Option<f64>,
     /// Length [s] of the next step of the method asked for, while brief steps are made.
-    pub(crate) full_step: Option<f64>,
+    pub(super) full_step: Option<f64>,
     /// Time at which the group was made.
-    pub(crate) made: Time,
+    pub(super) made: Time,
     /// Its steps are brief: the next event is so near that a step of few stages reaches it.
-    pub(crate) is_brief: bool,
+    pub(super) is_brief: bool,
     /// No event can end its segments early: dense output may be postponed until it is asked for.
-    pub(crate) is_unwatched: bool,
+    pub(super) is_unwatched: bool,
     /// A point follows a rail whose curvature has kinks, over which a method of high order gains little.
-    pub(crate) has_kinks: bool,
-    pub(crate) stiffness: Stiffness,
+    pub(super) has_kinks: bool,
+    pub(super) stiffness: Stiffness,
     /// Change of each body's acceleration per displacement [1/s^2], as the last probe found it; empty where none was
     /// needed, and in groups with contacts.
-    pub(crate) roughness: Vec<f64>,
+    pub(super) roughness: Vec<f64>,
     /// The last accepted step of the group as it is now.
-    pub(crate) accepted: Option<Accepted>,
+    pub(super) accepted: Option<Accepted>,
     /// Length [s] of the last step, if along it neither the forces of contacts varied nor the gaps of those without
     /// force, and no force law acts on the group.
-    pub(crate) steady_step: Option<f64>,
+    pub(super) steady_step: Option<f64>,
     /// Largest acceleration [m/s^2] of a point by forces other than those of rows, as last evaluated.
-    pub(crate) free_acceleration: f64,
+    pub(super) free_acceleration: f64,
     /// Length [m] over which the forces of laws vary, as last evaluated; infinite where they vary over no less than the
     /// size of the bodies.
-    pub(crate) force_length: f64,
+    pub(super) force_length: f64,
     /// The same length of the laws that name one body.
-    pub(crate) field_length: f64,
+    pub(super) field_length: f64,
     /// Energy [J] that the projection of the end has added.
-    pub(crate) projected: f64,
+    pub(super) projected: f64,
     /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.
-    pub(crate) largest_error: f64,
+    pub(super) largest_error: f64,
     /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
-    pub(crate) least_gap: Option<f64>,
+    pub(super) least_gap: Option<f64>,
     /// The event that ends the segment early, if there is one, and its offset [s].
-    pub(crate) event: Option<(f64, SegmentEnd)>,
+    pub(super) event: Option<(f64, SegmentEnd)>,
     /// Offset [s] up to which the stages of the step show that no contact loses its force, while the search for events
     /// has not gone further.
-    pub(crate) look: Option<f64>,
+    pub(super) look: Option<f64>,
 }
 
 impl Group {
@@ -213,6 +213,224 @@ impl Group {
 fn emptied<T>(mut list: Vec<T>) -> Vec<T> {
     list.clear();
     list
+}
+
+impl Group {
+    // getters of Group
+    /// Its bodies, ascending.
+    #[inline]
+    pub(crate) fn bodies(&self) -> &[BodyId] {
+        &self.bodies
+    }
+
+    /// Force [N] of each row at the end of the segment.
+    #[inline]
+    pub(crate) fn end_forces(&self) -> &[f64] {
+        &self.end_forces
+    }
+
+    /// State at the end of the segment.
+    #[inline]
+    pub(crate) fn end_state(&self) -> &[f64] {
+        &self.end_state
+    }
+
+    /// The event that ends the segment early, if there is one, and its offset [s].
+    #[inline]
+    pub(crate) fn event(&self) -> Option<(f64, SegmentEnd)> {
+        self.event
+    }
+
+    /// Force [N] of each row at the start of the segment.
+    #[inline]
+    pub(crate) fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// Length [s] of the next step of the method asked for, while brief steps are made.
+    #[inline]
+    pub(crate) fn full_step(&self) -> Option<f64> {
+        self.full_step
+    }
+
+    /// A point follows a rail whose curvature has kinks, over which a method of high order gains little.
+    #[inline]
+    pub(crate) fn has_kinks(&self) -> bool {
+        self.has_kinks
+    }
+
+    /// The held.
+    #[inline]
+    pub(crate) fn held(&self) -> &HeldRows {
+        &self.held
+    }
+
+    /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
+    #[inline]
+    pub(crate) fn idle(&self) -> &[HeldRow] {
+        &self.idle
+    }
+
+    /// Another group was ended at the time at which this one was made, because a contact pulled from the start; here it
+    /// may pull again.
+    #[inline]
+    pub(crate) fn is_patient(&self) -> bool {
+        self.is_patient
+    }
+
+    /// No event can end its segments early: dense output may be postponed until it is asked for.
+    #[inline]
+    pub(crate) fn is_unwatched(&self) -> bool {
+        self.is_unwatched
+    }
+
+    /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.
+    #[inline]
+    pub(crate) fn largest_error(&self) -> f64 {
+        self.largest_error
+    }
+
+    /// Force laws that act on its bodies, ascending.
+    #[inline]
+    pub(crate) fn laws(&self) -> &[usize] {
+        &self.laws
+    }
+
+    /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
+    #[inline]
+    pub(crate) fn least_gap(&self) -> Option<f64> {
+        self.least_gap
+    }
+
+    /// Offset [s] up to which the stages of the step show that no contact loses its force, while the search for events
+    /// has not gone further.
+    #[inline]
+    pub(crate) fn look(&self) -> Option<f64> {
+        self.look
+    }
+
+    /// Time at which the group was made.
+    #[inline]
+    pub(crate) fn made(&self) -> Time {
+        self.made
+    }
+
+    /// Length of the next step to try [s]; `None` if nothing is known.
+    #[inline]
+    pub(crate) fn next_step(&self) -> Option<f64> {
+        self.next_step
+    }
+
+    /// x, y and angle of each body along the segment.
+    #[inline]
+    pub(crate) fn paths(&self) -> &[[SegmentPolynomial; 3]] {
+        &self.paths
+    }
+
+    /// Energy [J] that the projection of the end has added.
+    #[inline]
+    pub(crate) fn projected(&self) -> f64 {
+        self.projected
+    }
+
+    /// Rates of `state` at the start of the segment.
+    #[inline]
+    pub(crate) fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
+    /// The held rows: independent ones of the contacts, and every row of the connectors.
+    #[inline]
+    pub(crate) fn rows(&self) -> &[HeldRow] {
+        &self.rows
+    }
+
+    /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
+    #[inline]
+    pub(crate) fn sides(&self) -> &[[Option<u32>; 2]] {
+        &self.sides
+    }
+
+    /// Length of the segment [s].
+    #[inline]
+    pub(crate) fn span(&self) -> f64 {
+        self.span
+    }
+
+    /// Time at which its segment starts.
+    #[inline]
+    pub(crate) fn start(&self) -> Time {
+        self.start
+    }
+
+    /// Position (x, y, angle) of each body, then velocities likewise, then works.
+    #[inline]
+    pub(crate) fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// The stiffness.
+    #[inline]
+    pub(crate) fn stiffness(&self) -> Stiffness {
+        self.stiffness
+    }
+
+    /// The stops.
+    #[inline]
+    pub(crate) fn stops(&self) -> &[Stop] {
+        &self.stops
+    }
+
+    /// The works.
+    #[inline]
+    pub(crate) fn works(&self) -> &[Work] {
+        &self.works
+    }
+}
+
+#[cfg(test)]
+impl Group {
+    pub(crate) fn state_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.state
+    }
+
+    pub(crate) fn end_state_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.end_state
+    }
+
+    pub(crate) fn forces_mut(&mut self) -> [&mut Vec<f64>; 2] {
+        [&mut self.forces, &mut self.end_forces]
+    }
+
+    pub(crate) fn idle_mut(&mut self) -> &mut Vec<HeldRow> {
+        &mut self.idle
+    }
+
+    pub(crate) fn make_idle(&mut self) {
+        self.idle = std::mem::take(&mut self.rows);
+    }
+
+    pub(crate) fn forget_structure(&mut self) {
+        self.held.set_structure(&[], &self.sides);
+    }
+
+    pub(crate) fn set_laws(&mut self, laws: Vec<usize>) {
+        self.laws = laws;
+    }
+
+    pub(crate) fn set_times(&mut self, start: Time, made: Time) {
+        (self.start, self.made) = (start, made);
+    }
+
+    pub(crate) fn set_span(&mut self, span: f64) {
+        self.span = span;
+    }
+
+    pub(crate) fn end_at_start(&mut self) {
+        self.end_state.clone_from(&self.state);
+        self.end_rates.clone_from(&self.rates);
+        self.span = 0.0;
+    }
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub(crate) fn drop_leaving(
     let before = settling.candidates.len();
     settling.candidates.retain(|&index| {
         let record = &region.records()[index];
-        !leaves_at_once(assembly, connectors, record, |body| stage.movings[body.index()])
+        !leaves_at_once(assembly, connectors, record, |body| stage.movings()[body.index()])
     });
     settling.candidates.len() < before
 }

@@ -214,7 +214,7 @@ fn could_hop(
 fn push_bodies(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
     let mut pushed = std::mem::take(&mut settling.pushed);
     pushed.clear();
-    pushed.extend_from_slice(&stage.accelerations);
+    pushed.extend_from_slice(stage.accelerations());
     settling.add_responses(region, &settling.candidates, |body| assembly.inertia(body), &mut pushed);
     settling.pushed = pushed;
 }
@@ -226,7 +226,7 @@ pub(crate) fn accelerations_of(
     (region, settling): (&Region, &mut Settling),
     records: [usize; 2],
 ) -> [f64; 2] {
-    push_bodies(assembly, region, settling, &groups.stage);
+    push_bodies(assembly, region, settling, groups.stage());
     records.map(|record| offset_under(region, &region.records()[record], &settling.pushed))
 }
 
@@ -276,7 +276,7 @@ fn accelerate_region(
     time: Time,
 ) {
     for &body in region.bodies() {
-        stage.movings[body.index()] = assembly.flyer(body).moving_at(time);
+        stage.place(body, assembly.flyer(body).moving_at(time));
     }
     assembly.laws().list(region.bodies(), &mut settling.laws);
     let physics = physics(assembly, connectors);
@@ -311,7 +311,7 @@ fn drop_idle(
     let Settling { candidates, solution, gross, .. } = settling;
     // Loads [N] of each body: its own and those of its rows.
     gross.clear();
-    let bodies = region.bodies().iter().zip(&stage.accelerations);
+    let bodies = region.bodies().iter().zip(stage.accelerations());
     gross.extend(bodies.map(|(&body, acceleration)| assembly.flyer(body).load(acceleration)));
     for (&index, force) in candidates.iter().zip(&solution.force) {
         for place in places_of(region, &region.records()[index]) {
@@ -435,7 +435,7 @@ fn lower_end(record: &Collision) -> f64 {
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
 fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    offset_under(region, record, &stage.accelerations)
+    offset_under(region, record, stage.accelerations())
 }
 
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
@@ -448,7 +448,7 @@ fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]])
 
 /// Largest acceleration [m/s^2] of the centre of a record's bodies without the forces of rows.
 fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    let linear = places_of(region, record).map(|place| spin(stage.accelerations[place]).linear.length());
+    let linear = places_of(region, record).map(|place| spin(stage.accelerations()[place]).linear.length());
     linear.fold(0.0, f64::max)
 }
 
@@ -510,7 +510,7 @@ mod tests {
         let touch = |record: &&Collision| record.involves_body(BodyId(3));
         let touch = region.records().iter().find(touch).and_then(Touch::of).expect("they touch");
         settling.set_likely(region.records().iter().map(|_| None));
-        let mut stage = std::mem::take(&mut rooms.groups.stage);
+        let mut stage = rooms.groups.take_stage();
         settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), true).expect("it rests");
         assert!(settling.held.len() >= 2, "the posts hold the beam");
         settling.holds_touch(touch)
@@ -548,7 +548,7 @@ mod tests {
         dissolve(&mut rooms, BodyId(1));
         let EventWork { region, settling, .. } = &mut *work;
         collect_region(&rooms.view(), region, &[BodyId(1)], rooms.assembly.now());
-        let mut stage = std::mem::take(&mut rooms.groups.stage);
+        let mut stage = rooms.groups.take_stage();
         for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
             region.set_hasty(is_hasty);
             region.records_mut()[0].motion.normal_velocity = share * rooms.assembly.rest_speed();

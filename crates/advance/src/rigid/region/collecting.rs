@@ -63,7 +63,7 @@ pub(crate) fn collect_region(view: &View<'_>, region: &mut Region, seeds: &[Body
             && !region.groups.contains(&group.leader())
         {
             region.groups.push(group.leader());
-            for &mate in &group.bodies {
+            for &mate in group.bodies() {
                 region.add(mate);
             }
         }
@@ -187,7 +187,7 @@ fn counts_as_touching(
 fn is_carried(assembly: &Assembly, groups: &Groups, record: &Collision) -> bool {
     let Some(touch) = Touch::of(record) else { return false };
     let mut groups = touch.bodies.into_iter().filter_map(|body| group_of(assembly, groups, body));
-    groups.any(|group| group.rows.iter().any(|row| row.touch() == Some(touch)))
+    groups.any(|group| group.rows().iter().any(|row| row.touch() == Some(touch)))
 }
 
 /// True if two corners pass each other before they come to the gap at which their bodies fire.

@@ -72,11 +72,13 @@ pub(super) fn fill(list: &mut Vec<[f64; NODES]>, rows: usize) {
 /// loses its force takes an evaluation for every offset tried, so that waits until the time up to which none can:
 /// mostly another event has come by then.
 pub(crate) fn find_event(dynamics: &mut Dynamics<'_>) {
-    dynamics.group.event = find_geometric_event(dynamics);
-    let firm = firm_part(dynamics).map(|part| part * dynamics.group.span);
-    let earlier = |offset: &f64| dynamics.group.event.is_none_or(|(event, _)| *offset < event);
-    dynamics.group.look = firm.filter(earlier);
-    if dynamics.group.look == Some(0.0) {
+    let event = find_geometric_event(dynamics);
+    dynamics.group.set_event(event);
+    let firm = firm_part(dynamics).map(|part| part * dynamics.group.span());
+    let earlier = |offset: &f64| dynamics.group.event().is_none_or(|(event, _)| *offset < event);
+    let look = firm.filter(earlier);
+    dynamics.group.set_look(look);
+    if dynamics.group.look() == Some(0.0) {
         look_for_release(dynamics);
     }
 }
@@ -87,26 +89,26 @@ fn find_geometric_event(dynamics: &mut Dynamics<'_>) -> Option<(f64, SegmentEnd)
     let mut samples = sample_rows(dynamics);
     lower_sunk(dynamics, &mut samples);
     if !are_still(dynamics, &samples.heights) {
-        dynamics.group.steady_step = None;
+        dynamics.group.forget_steadiness();
     }
     find_early_sinking(dynamics, &mut earliest, &samples);
     find_early_change(dynamics, &mut earliest, &samples.rooms);
-    let all = Part::all(dynamics.group.span);
+    let all = Part::all(dynamics.group.span());
     find_first(dynamics, &mut earliest, (&samples.rooms, all), &CHANGES);
     let margin = dynamics.physics.mechanism.change_margin();
-    let mut overrun = std::mem::take(&mut dynamics.group.overrun);
+    let mut overrun = dynamics.group.lend_overrun();
     find_overdue(dynamics, &mut earliest, (&samples.rooms, all, &mut overrun), &CHANGES, |_, _| margin);
-    dynamics.group.overrun = overrun;
+    dynamics.group.take_back_overrun(overrun);
     find_earlier_ends(dynamics, &mut earliest, &samples.rooms);
     find_first(dynamics, &mut earliest, (&samples.heights, all), &SINKINGS);
-    dynamics.stage.samples = samples;
-    for place in 0..dynamics.group.stops.len() {
-        let stop = dynamics.group.stops[place];
+    dynamics.stage.take_back_samples(samples);
+    for place in 0..dynamics.group.stops().len() {
+        let stop = dynamics.group.stops()[place];
         earliest.offer(find_stop(dynamics, stop), SegmentEnd::Stop(stop.id));
         earliest.offer(find_passing(dynamics, stop), SegmentEnd::Switch);
     }
-    for place in 0..dynamics.group.laws.len() {
-        let law = dynamics.group.laws[place];
+    for place in 0..dynamics.group.laws().len() {
+        let law = dynamics.group.laws()[place];
         for index in 0..dynamics.physics.laws[law].switches() {
             earliest.offer(find_switch(dynamics, law, index), SegmentEnd::Switch);
         }
@@ -122,15 +124,15 @@ fn are_still(dynamics: &Dynamics<'_>, heights: &[[f64; NODES]]) -> bool {
 
 /// Samples at the nodes the functions of the rows that need no forces.
 fn sample_rows(dynamics: &mut Dynamics<'_>) -> Samples {
-    let mut samples = std::mem::take(&mut dynamics.stage.samples);
+    let mut samples = dynamics.stage.lend_samples();
     let Samples { rooms, heights, early, .. } = &mut samples;
     find_who_may_leave(dynamics, rooms);
     dynamics.watch_rows(|row| rooms.get(row).is_some_and(|sample| sample[0].is_finite()));
-    fill(heights, dynamics.group.idle.len());
+    fill(heights, dynamics.group.idle().len());
     early.clear();
     early.resize(heights.len(), [0.0; EARLY]);
     for index in 0..if rooms.is_empty() && heights.is_empty() { 0 } else { NODES } {
-        dynamics.put_watched_at(node(index, dynamics.group.span));
+        dynamics.put_watched_at(node(index, dynamics.group.span()));
         for (row, sample) in rooms.iter_mut().enumerate().filter(|(_, sample)| sample[0].is_finite()) {
             sample[index] = way_to_end(dynamics, row);
         }
@@ -139,7 +141,7 @@ fn sample_rows(dynamics: &mut Dynamics<'_>) -> Samples {
         }
     }
     for index in 0..if early.is_empty() { 0 } else { EARLY } {
-        dynamics.put_watched_at(early_node(index, dynamics.group.span));
+        dynamics.put_watched_at(early_node(index, dynamics.group.span()));
         for (row, sample) in early.iter_mut().enumerate() {
             sample[index] = height(dynamics, row);
         }
@@ -158,7 +160,7 @@ fn lower_sunk(dynamics: &mut Dynamics<'_>, samples: &mut Samples) {
         dynamics.put_idle_at(row, 0.0);
         if is_within(dynamics, row) {
             let way = dynamics.physics.mechanism.tolerances.sink() - heights[0];
-            dynamics.group.idle[row].gap -= way;
+            dynamics.group.lower_idle_gap(row, way);
             heights.iter_mut().chain(early).for_each(|height| *height += way);
         }
     }
@@ -169,12 +171,12 @@ fn lower_sunk(dynamics: &mut Dynamics<'_>, samples: &mut Samples) {
 fn find_who_may_leave(dynamics: &mut Dynamics<'_>, rooms: &mut Vec<[f64; NODES]>) {
     rooms.clear();
     let mechanism = &dynamics.physics.mechanism;
-    if !dynamics.group.rows.iter().any(|row| mechanism.can_change(row)) {
+    if !dynamics.group.rows().iter().any(|row| mechanism.can_change(row)) {
         return;
     }
     find_bounds(dynamics);
-    dynamics.place_at(MIDDLE * dynamics.group.span);
-    rooms.extend((0..dynamics.group.rows.len()).map(|row| {
+    dynamics.place_at(MIDDLE * dynamics.group.span());
+    rooms.extend((0..dynamics.group.rows().len()).map(|row| {
         let sample = if stays(dynamics, row) { f64::INFINITY } else { 0.0 };
         [sample; NODES]
     }));
@@ -186,7 +188,7 @@ fn find_who_may_leave(dynamics: &mut Dynamics<'_>, rooms: &mut Vec<[f64; NODES]>
 /// Offers the earliest contact that sinks before the first node.
 fn find_early_sinking(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, samples: &Samples) {
     for (row, (early, heights)) in samples.early.iter().zip(&samples.heights).enumerate() {
-        let fall = early_fall(heights[0], early, dynamics.group.span, |offset| {
+        let fall = early_fall(heights[0], early, dynamics.group.span(), |offset| {
             dynamics.put_idle_at(row, offset);
             height(dynamics, row)
         });
@@ -202,7 +204,7 @@ fn find_early_sinking(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, samp
 /// just taken over from its neighbour starts at the end of its features, or beyond by rounding.
 fn find_early_change(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
     for (row, values) in rooms.iter().enumerate() {
-        let fall = fall_after_rise(values, dynamics.group.span, |offset| {
+        let fall = fall_after_rise(values, dynamics.group.span(), |offset| {
             dynamics.put_row_at(row, offset);
             way_to_end(dynamics, row)
         });
@@ -215,13 +217,13 @@ fn find_early_change(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, rooms
 /// is earlier; and from its start on, where by rounding that lies before the piece.
 fn find_earlier_ends(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
     for (row, rooms) in rooms.iter().enumerate() {
-        let is_rail = matches!(dynamics.group.rows[row].source, RowSource::Connector(..));
+        let is_rail = matches!(dynamics.group.rows()[row].source, RowSource::Connector(..));
         for _ in 0..MOST_ZOOMS {
             let is_own = earliest.found.is_some_and(|(_, end)| end == SegmentEnd::Change(row));
             if !is_rail || rooms[0].is_infinite() || !(is_own || rooms[0] < 0.0) {
                 break;
             }
-            let limit = earliest.limit().unwrap_or(dynamics.group.span);
+            let limit = earliest.limit().unwrap_or(dynamics.group.span());
             // Neither the rounding of a place at the end of a piece nor the place from which the point sets out
             // counts as beyond.
             let margin = 2.0 * dynamics.physics.mechanism.change_margin().max(-rooms[0]);
@@ -254,7 +256,7 @@ pub(super) fn find_first(
     if samples.is_empty() {
         return;
     }
-    let mut there = std::mem::take(&mut dynamics.stage.there);
+    let mut there = dynamics.stage.lend_there();
     let mut read_at = None;
     for (row, values) in samples.iter().enumerate() {
         let limit = earliest.limit();
@@ -278,14 +280,14 @@ pub(super) fn find_first(
         (watch.place_for)(dynamics, row, offset);
         earliest.offer((watch.genuine)(dynamics, row, offset), (watch.end)(row));
     }
-    dynamics.stage.there = there;
+    dynamics.stage.take_back_there(there);
 }
 
 /// Offset [s] at which a contact that is touched without force sinks on its features, although it was first seen to
 /// sink beyond them: if it is turned away it may be turned back, and then sinks at once. A contact that has gone
 /// round its body by then, and lies behind its features, does not count.
 fn first_sinking_within(dynamics: &mut Dynamics<'_>, row: usize) -> Option<f64> {
-    let span = dynamics.group.span;
+    let span = dynamics.group.span();
     let mut read = |offset: f64| {
         dynamics.put_idle_at(row, offset);
         height(dynamics, row).max(-idle_way(dynamics, row))
@@ -294,7 +296,7 @@ fn first_sinking_within(dynamics: &mut Dynamics<'_>, row: usize) -> Option<f64> 
     let fall = first_fall_before(&values, span, None, read)?;
     dynamics.put_idle_at(row, fall);
     let mechanism = &dynamics.physics.mechanism;
-    let gap = mechanism.gap(&dynamics.group.idle[row], &dynamics.stage.movings);
+    let gap = mechanism.gap(&dynamics.group.idle()[row], dynamics.stage.movings());
     (gap > -mechanism.tolerances.distance_tol()).then_some(fall)
 }
 
@@ -303,14 +305,14 @@ pub(crate) fn way_to_end(dynamics: &Dynamics<'_>, row: usize) -> f64 {
     dynamics
         .physics
         .mechanism
-        .way_to_end(&dynamics.group.rows[row], &dynamics.stage.movings)
+        .way_to_end(&dynamics.group.rows()[row], dynamics.stage.movings())
         .unwrap_or(f64::INFINITY)
 }
 
 /// Height [m] of a contact that is touched without force above its least gap.
 pub(crate) fn height(dynamics: &Dynamics<'_>, row: usize) -> f64 {
-    let row = &dynamics.group.idle[row];
-    dynamics.physics.mechanism.gap(row, &dynamics.stage.movings) - row.gap
+    let row = &dynamics.group.idle()[row];
+    dynamics.physics.mechanism.gap(row, dynamics.stage.movings()) - row.gap
 }
 
 /// True if a contact that is touched without force lies within its features.
@@ -320,8 +322,8 @@ pub(crate) fn is_within(dynamics: &Dynamics<'_>, row: usize) -> bool {
 
 /// Distance [m] of a contact that is touched without force from running off its features, infinite if it cannot.
 fn idle_way(dynamics: &Dynamics<'_>, row: usize) -> f64 {
-    let row = &dynamics.group.idle[row];
-    dynamics.physics.mechanism.way_to_end(row, &dynamics.stage.movings).unwrap_or(f64::INFINITY)
+    let row = &dynamics.group.idle()[row];
+    dynamics.physics.mechanism.way_to_end(row, dynamics.stage.movings()).unwrap_or(f64::INFINITY)
 }
 
 #[cfg(test)]
@@ -341,13 +343,13 @@ mod tests {
             let mut rooms = resting_discs(&[0.0]);
             let sink = rooms.assembly.settings().tolerances.sink();
             let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
-            group.idle = std::mem::take(&mut group.rows);
-            group.idle[0].gap += below - sink;
-            group.state[1] -= sink;
-            (group.forces, group.end_forces) = (Vec::new(), Vec::new());
+            group.make_idle();
+            group.idle_mut()[0].gap += below - sink;
+            group.state_mut()[1] -= sink;
+            group.forces_mut().into_iter().for_each(Vec::clear);
             group.find_sides();
-            group.next_step = Some(1e-3);
-            group.held.set_structure(&[], &group.sides);
+            group.set_next_step(Some(1e-3));
+            group.forget_structure();
             with_group(
                 &rooms.assembly,
                 &rooms.connectors,
@@ -360,8 +362,8 @@ mod tests {
                     find_event(dynamics);
                 },
             );
-            let Some((offset, SegmentEnd::Sink(0))) = group.event else {
-                panic!("{below} m below: {:?}", group.event)
+            let Some((offset, SegmentEnd::Sink(0))) = group.event() else {
+                panic!("{below} m below: {:?}", group.event())
             };
             let way = 0.5 * 9.81 * offset * offset;
             assert!(way < 1.01 * sink, "{below} m below: sinks by {way} m of {sink} m");

@@ -9,8 +9,8 @@ use crate::rigid::watch::switches::find_switch_at_end;
 
 /// Extends the group by a step, and finds the event that ends it early.
 pub(crate) fn extend_watched(dynamics: &mut Dynamics<'_>, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
-    if !dynamics.group.is_unwatched {
-        let proposed = dynamics.group.next_step;
+    if !dynamics.group.is_unwatched() {
+        let proposed = dynamics.group.next_step();
         let told = dynamics.extend_on_rows(tools)?;
         dynamics.note_stiffness(tools, told);
         find_event(dynamics);
@@ -19,11 +19,12 @@ pub(crate) fn extend_watched(dynamics: &mut Dynamics<'_>, tools: &mut Tools<'_>)
     let told = dynamics.extend_unwatched(tools)?;
     dynamics.note_stiffness(tools, told);
     dynamics.limit_next_step(tools.stepper.method().step_factor(0.0));
-    (dynamics.group.event, dynamics.group.look) = (None, None);
+    dynamics.group.set_event(None);
+    dynamics.group.set_look(None);
     // Of projected ends only rounding is left, so the gaps of the last evaluation tell.
     let is_projected = tools.settings.projection;
-    dynamics.group.largest_error =
-        if is_projected { dynamics.stage.gap_error } else { dynamics.connector_error() };
+    let largest_error = if is_projected { dynamics.stage.gap_error() } else { dynamics.connector_error() };
+    dynamics.group.set_largest_error(largest_error);
     Ok(())
 }
 
@@ -35,25 +36,26 @@ fn end_before_switch(
     tools: &mut Tools<'_>,
     proposed: Option<f64>,
 ) -> Result<(), StepFailure> {
-    if dynamics.group.laws.is_empty() || !tools.stepper.method().is_adaptive() {
+    if dynamics.group.laws().is_empty() || !tools.stepper.method().is_adaptive() {
         return Ok(());
     }
     let mut before = dynamics.clock_ticks(TICKS_BEFORE_SWITCH);
     for _ in 0..MOST_APPROACHES {
-        let Some((offset, SegmentEnd::Switch)) = dynamics.group.event else { break };
+        let Some((offset, SegmentEnd::Switch)) = dynamics.group.event() else { break };
         if offset <= 2.0 * before {
             break;
         }
-        dynamics.group.next_step = Some(offset - before);
+        dynamics.group.set_next_step(Some(offset - before));
         dynamics.extend_on_rows(tools)?;
         find_event(dynamics);
-        if let (Some(next), Some(proposed)) = (&mut dynamics.group.next_step, proposed) {
-            *next = next.max(proposed);
+        if let (Some(next), Some(proposed)) = (dynamics.group.next_step(), proposed) {
+            dynamics.group.set_next_step(Some(next.max(proposed)));
         }
         before *= WIDER;
     }
-    if dynamics.group.event.is_none() {
-        dynamics.group.event = find_switch_at_end(dynamics).map(|offset| (offset, SegmentEnd::Switch));
+    if dynamics.group.event().is_none() {
+        let event = find_switch_at_end(dynamics).map(|offset| (offset, SegmentEnd::Switch));
+        dynamics.group.set_event(event);
     }
     Ok(())
 }

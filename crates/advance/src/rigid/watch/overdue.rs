@@ -94,13 +94,14 @@ mod tests {
             let mut rooms = resting_discs(&[0.0]);
             rooms.assembly.set_laws(vec![Arc::new(Lift)]);
             let group = stepped(rooms, |group| {
-                group.laws = vec![0];
-                group.start = Time::from_seconds(1.0 + late);
-                group.next_step = Some(1e-2);
+                group.set_laws(vec![0]);
+                let (start, made) = (Time::from_seconds(1.0 + late), group.made());
+                group.set_times(start, made);
+                group.set_next_step(Some(1e-2));
             });
-            assert!(group.forces[0] < 0.0, "{} N", group.forces[0]);
-            let Some((offset, SegmentEnd::Release(0))) = group.event else {
-                panic!("{late}: {:?}", group.event)
+            assert!(group.forces()[0] < 0.0, "{} N", group.forces()[0]);
+            let Some((offset, SegmentEnd::Release(0))) = group.event() else {
+                panic!("{late}: {:?}", group.event())
             };
             // The contact lets go when it pulls twice as much as at the start, or as much as may be rounding.
             let pull = (late + offset) / late;
@@ -113,11 +114,11 @@ mod tests {
         // The corner reaches 0.2 rad farther; the block topples on.
         for beyond in [1e-7, 1e-4] {
             let group = stepped(block_on_its_corner(), |group| {
-                turn_on_its_corner(group, group.state[2] + 0.2 + beyond, 1.0);
-                group.next_step = Some(1e-2);
+                turn_on_its_corner(group, group.state()[2] + 0.2 + beyond, 1.0);
+                group.set_next_step(Some(1e-2));
             });
-            let Some((offset, SegmentEnd::Change(0))) = group.event else {
-                panic!("{beyond}: {:?}", group.event)
+            let Some((offset, SegmentEnd::Change(0))) = group.event() else {
+                panic!("{beyond}: {:?}", group.event())
             };
             let way = offset / beyond;
             assert!(way > 0.5 && way < 3.0, "{beyond} rad beyond: {offset} s");
@@ -130,22 +131,20 @@ mod tests {
         let mut rooms = block_on_its_corner();
         rooms.assembly.settings_mut().steps.largest_step = Some(0.3 * BEYOND);
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
-        let angle = group.state[2] + 0.2 + BEYOND;
+        let angle = group.state()[2] + 0.2 + BEYOND;
         turn_on_its_corner(&mut group, angle, 1.0);
-        group.end_state.clone_from(&group.state);
-        group.end_rates.clone_from(&group.rates);
-        group.span = 0.0;
+        group.end_at_start();
         put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
         let mut turned = 0.0;
         for _ in 0..10 {
             continue_group(&mut rooms, BodyId(1)).expect("it topples");
             let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is held");
-            if let Some((offset, SegmentEnd::Change(0))) = group.event {
+            if let Some((offset, SegmentEnd::Change(0))) = group.event() {
                 turned += offset;
                 assert!(turned > 0.5 * BEYOND && turned < 3.0 * BEYOND, "{turned} rad");
                 return;
             }
-            turned += group.span;
+            turned += group.span();
         }
         panic!("it is held after {turned} rad");
     }

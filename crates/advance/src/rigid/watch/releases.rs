@@ -7,7 +7,7 @@
 use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
-use crate::rigid::group::state::{Group, SegmentEnd};
+use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::group::stepping::Stepping;
 use crate::rigid::watch::crossing::{Part, interpolated};
 use crate::rigid::watch::earliest::Earliest;
@@ -49,14 +49,16 @@ const RELEASES: Watch = Watch {
 /// Finds the first contact that loses its force on the segment, if that comes before the event found otherwise; not
 /// before the offset of the look.
 pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
-    let from = dynamics.group.look.take().unwrap_or(0.0);
+    let from = dynamics.group.look().unwrap_or(0.0);
+    dynamics.group.set_look(None);
     find_least_forces(dynamics);
-    let mut earliest = Earliest { found: pull_at_start(dynamics).or(dynamics.group.event) };
-    let mut forces = std::mem::take(&mut dynamics.stage.samples.forces);
-    let mut pulled = std::mem::take(&mut dynamics.group.pulled);
-    let narrowest = NARROWEST * dynamics.group.span;
-    let end = earliest.limit().unwrap_or(dynamics.group.span);
-    let most = if dynamics.group.laws.is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
+    let mut earliest = Earliest { found: pull_at_start(dynamics).or(dynamics.group.event()) };
+    let mut samples = dynamics.stage.lend_samples();
+    let mut forces = std::mem::take(&mut samples.forces);
+    let mut pulled = dynamics.group.lend_pulled();
+    let narrowest = NARROWEST * dynamics.group.span();
+    let end = earliest.limit().unwrap_or(dynamics.group.span());
+    let most = if dynamics.group.laws().is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
     let (mut part, mut halvings) = (Part::all(end), 0);
     while earliest.is_after(part.from) {
         sample_forces(dynamics, &mut forces, part);
@@ -67,7 +69,7 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
         }
         find_first(dynamics, &mut earliest, (&forces, part), &RELEASES);
         find_overdue(dynamics, &mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
-            PULL * dynamics.stage.least[row]
+            PULL * dynamics.stage.least()[row]
         });
         if part.to >= end {
             break;
@@ -75,9 +77,10 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
         // The next part may be twice as long.
         part = Part { from: part.to, to: (part.to + 2.0 * part.span()).min(end) };
     }
-    dynamics.group.pulled = pulled;
-    dynamics.group.event = earliest.found.map(|(offset, end)| (offset.max(from), end));
-    dynamics.stage.samples.forces = forces;
+    dynamics.group.take_back_pulled(pulled);
+    dynamics.group.set_event(earliest.found.map(|(offset, end)| (offset.max(from), end)));
+    samples.forces = forces;
+    dynamics.stage.take_back_samples(samples);
 }
 
 /// True if the quartics through the samples show all that contact forces do on a part of the segment. No error
@@ -88,7 +91,7 @@ fn is_resolved_by(dynamics: &mut Dynamics<'_>, forces: &[[f64; NODES]], part: Pa
         dynamics.evaluate_at(part.from + fraction * part.span());
         forces.iter().enumerate().filter(|(_, values)| values[0].is_finite()).all(|(row, values)| {
             let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-            let allowed = dynamics.stage.least[row].max(RESOLVED * size);
+            let allowed = dynamics.stage.least()[row].max(RESOLVED * size);
             (pressure(dynamics, row) - interpolated(values, fraction)).abs() <= allowed
         })
     })
@@ -96,14 +99,20 @@ fn is_resolved_by(dynamics: &mut Dynamics<'_>, forces: &[[f64; NODES]], part: Pa
 
 /// Release of a contact that pulls by more than rounding as the group is made.
 fn pull_at_start(dynamics: &Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
-    let Group { start, made, .. } = *dynamics.group;
-    if dynamics.group.is_patient || start != made {
+    let group = &*dynamics.group;
+    let (start, made) = (group.start(), group.made());
+    if dynamics.group.is_patient() || start != made {
         return None;
     }
     let pulls =
         |((row, force), least): ((&HeldRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
-    let row =
-        dynamics.group.rows.iter().zip(&dynamics.group.forces).zip(&dynamics.stage.least).position(pulls)?;
+    let row = dynamics
+        .group
+        .rows()
+        .iter()
+        .zip(dynamics.group.forces())
+        .zip(dynamics.stage.least())
+        .position(pulls)?;
     Some((0.0, SegmentEnd::Release(row)))
 }
 
@@ -112,13 +121,14 @@ fn pull_at_start(dynamics: &Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
 /// and else for as long as it would take to vanish several times as fast as it varies. Implicit steps have too few
 /// stages to tell; along steps that force laws have left too long, the variation does not tell the rate.
 pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
-    let Group { rows, forces, end_forces, laws, .. } = &*dynamics.group;
+    let group = &*dynamics.group;
+    let (rows, forces, end_forces, laws) = (group.rows(), group.forces(), group.end_forces(), group.laws());
     let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
     let is_known =
-        dynamics.group.stepping() != Stepping::Stiff && dynamics.stage.force_ranges.len() == rows.len();
+        dynamics.group.stepping() != Stepping::Stiff && dynamics.stage.force_ranges().len() == rows.len();
     let part = |(index, _): (usize, &HeldRow)| {
         let (start, end) = (forces[index], end_forces[index]);
-        let [least, largest] = if is_known { dynamics.stage.force_ranges[index] } else { [start, end] };
+        let [least, largest] = if is_known { dynamics.stage.force_ranges()[index] } else { [start, end] };
         let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
         let is_firm = is_known && least > largest - least;
         let is_slow = is_known && laws.is_empty() && start > 0.0;
@@ -132,40 +142,29 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
 /// which is that of the body's acceleration plus the forces of all its rows.
 fn find_least_forces(dynamics: &mut Dynamics<'_>) {
     let group = &*dynamics.group;
-    let count = group.bodies.len();
-    let mut gross = std::mem::take(&mut dynamics.stage.gross);
-    gross.clear();
-    gross.extend(group.bodies.iter().enumerate().map(|(place, &body)| {
+    let count = group.bodies().len();
+    let loads = group.bodies().iter().enumerate().map(|(place, &body)| {
         let at = 3 * (count + place);
-        dynamics.physics.mechanism.flyers[body.index()].load(&group.rates[at..at + 3])
-    }));
-    for (index, sides) in group.sides.iter().enumerate() {
-        let force = group.forces[index].abs().max(group.end_forces[index].abs());
-        sides.iter().flatten().for_each(|&place| gross[place as usize] += force);
-    }
-    dynamics.stage.least.clear();
-    dynamics.stage.least.extend(group.sides.iter().map(|sides| {
-        let loads = sides.iter().flatten().map(|&place| gross[place as usize]);
-        FORCE_SHARE * loads.fold(f64::INFINITY, f64::min)
-    }));
-    dynamics.stage.gross = gross;
+        dynamics.physics.mechanism.flyers[body.index()].load(&group.rates()[at..at + 3])
+    });
+    dynamics.stage.set_least_forces(FORCE_SHARE, group, loads);
 }
 
 /// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.
 fn sample_forces(dynamics: &mut Dynamics<'_>, samples: &mut Vec<[f64; NODES]>, part: Part) {
-    fill(samples, dynamics.group.rows.len());
+    fill(samples, dynamics.group.rows().len());
     for index in 0..NODES {
         let offset = part.node(index);
-        let is_inside = offset > 0.0 && offset < dynamics.group.span;
+        let is_inside = offset > 0.0 && offset < dynamics.group.span();
         if is_inside {
             dynamics.evaluate_at(offset);
         }
         let forces = match offset {
-            _ if is_inside => &dynamics.stage.forces,
-            0.0 => &dynamics.group.forces,
-            _ => &dynamics.group.end_forces,
+            _ if is_inside => dynamics.stage.forces(),
+            0.0 => dynamics.group.forces(),
+            _ => dynamics.group.end_forces(),
         };
-        let rows = dynamics.group.rows.iter().zip(forces).zip(&dynamics.stage.least);
+        let rows = dynamics.group.rows().iter().zip(forces).zip(dynamics.stage.least());
         for (sample, ((row, force), least)) in samples.iter_mut().zip(rows) {
             sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
         }
@@ -174,10 +173,10 @@ fn sample_forces(dynamics: &mut Dynamics<'_>, samples: &mut Vec<[f64; NODES]>, p
 
 /// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
 fn pressure(dynamics: &Dynamics<'_>, row: usize) -> f64 {
-    if dynamics.group.rows[row].bilateral {
+    if dynamics.group.rows()[row].bilateral {
         f64::INFINITY
     } else {
-        dynamics.stage.forces[row] + dynamics.stage.least[row]
+        dynamics.stage.forces()[row] + dynamics.stage.least()[row]
     }
 }
 
@@ -196,8 +195,8 @@ mod tests {
     fn firm_from_to(start: f64, end: f64) -> Option<f64> {
         let mut rooms = resting_discs(&[0.0]);
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
-        group.forces[0] = start;
-        group.end_forces[0] = end;
+        let [forces, end_forces] = group.forces_mut();
+        (forces[0], end_forces[0]) = (start, end);
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             dynamics.stage.clear_force_ranges(1);
             firm_part(dynamics)
@@ -222,14 +221,14 @@ mod tests {
         let mut rooms = resting_discs(&[0.0]);
         let mut group = rooms.groups.take(leader).expect("it is held");
         // As if the disc's force fell from 20 N, twice its weight, to -20 N at the end.
-        group.forces[0] = 20.0;
-        group.end_forces[0] = -20.0;
+        let [forces, end_forces] = group.forces_mut();
+        (forces[0], end_forces[0]) = (20.0, -20.0);
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             dynamics.stage.clear_force_ranges(1);
             find_event(dynamics);
         });
-        assert!(group.event.is_none());
-        assert_eq!(group.due(), group.start.plus(group.span / 8.0));
+        assert!(group.event().is_none());
+        assert_eq!(group.due(), group.start().plus(group.span() / 8.0));
         put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
         look_further(
             &mut rooms.assembly,
@@ -239,16 +238,17 @@ mod tests {
             leader,
         );
         let group = group_of(&rooms.assembly, &rooms.groups, leader).expect("it goes on");
-        let Some((offset, SegmentEnd::Release(0))) = group.event else { panic!("{:?}", group.event) };
-        assert!(offset > 0.75 * group.span, "{offset} s");
-        assert_eq!(rooms.agenda.time_of(Source::Group(leader)), Some(group.start.plus(offset)));
+        let Some((offset, SegmentEnd::Release(0))) = group.event() else { panic!("{:?}", group.event()) };
+        assert!(offset > 0.75 * group.span(), "{offset} s");
+        assert_eq!(rooms.agenda.time_of(Source::Group(leader)), Some(group.start().plus(offset)));
         // An event found for a time that has passed happens now.
         let mut group = rooms.groups.take(leader).expect("it goes on");
-        let late = 2.0 * group.span;
-        (group.event, group.look) = (None, Some(late));
+        let late = 2.0 * group.span();
+        group.set_event(None);
+        group.set_look(Some(late));
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
             look_for_release(dynamics)
         });
-        assert_eq!(group.event, Some((late, SegmentEnd::Release(0))));
+        assert_eq!(group.event(), Some((late, SegmentEnd::Release(0))));
     }
 }

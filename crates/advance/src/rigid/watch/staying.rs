@@ -62,28 +62,27 @@ pub(crate) fn way(rate: f64, second: f64, half: f64) -> f64 {
 
 /// Finds bounds on the motion of the group's bodies along the segment.
 pub(crate) fn find_bounds(dynamics: &mut Dynamics<'_>) {
-    dynamics.stage.bounds.clear();
-    dynamics.stage.bounds.extend(dynamics.group.paths.iter().map(bounds_along));
+    dynamics.stage.set_bounds(dynamics.group.paths().iter().map(bounds_along));
 }
 
 /// True if a held contact surely stays on its features along the segment. The bodies must be placed in its middle,
 /// and their bounds known.
 pub(crate) fn stays(dynamics: &Dynamics<'_>, row: usize) -> bool {
-    let held = &dynamics.group.rows[row];
+    let held = &dynamics.group.rows()[row];
     let RowSource::Contact(features) = held.source else { return false };
     let mechanism = &dynamics.physics.mechanism;
-    let movings = held.bodies.map(|body| moving_of(&dynamics.stage.movings, body));
+    let movings = held.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
     let sample = mechanism.sample(held.bodies, features, movings);
     let arms = Arms::of(&sample, movings[0], movings[1]);
     let side = |index: usize, arm: DVec2| Side {
         feature: mechanism.feature(held.bodies[index], features[index]),
         moving: movings[index],
         arm,
-        bounds: dynamics.group.sides[row][index]
-            .map_or(MotionBounds::default(), |place| dynamics.stage.bounds[place as usize]),
+        bounds: dynamics.group.sides()[row][index]
+            .map_or(MotionBounds::default(), |place| dynamics.stage.bounds()[place as usize]),
     };
     let (primary, other) = (side(0, arms.primary), side(1, arms.normal));
-    let half = 0.5 * dynamics.group.span;
+    let half = 0.5 * dynamics.group.span();
     match other.feature {
         Feature::Line(line) => stays_on_line(&sample, line, &primary, &other, half),
         Feature::Round(_) => stays_between_ends(&sample, &primary, &other, half),
@@ -158,12 +157,12 @@ mod tests {
     fn said_and_done(mut rooms: Rooms, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         set_out(&mut group);
-        group.next_step = Some(SPAN);
+        group.set_next_step(Some(SPAN));
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.set_out();
             dynamics.extend(tools).expect("it slides");
             dynamics.make_dense(tools.stepper);
-            let span = dynamics.group.span;
+            let span = dynamics.group.span();
             find_bounds(dynamics);
             dynamics.place_at(0.5 * span);
             let said = stays(dynamics, 0);
@@ -181,7 +180,7 @@ mod tests {
         for speed in [-150.0, 0.0, 1.0, 7.5, 7.99, 8.01, 9.0, 50.0] {
             let expected = speed * SPAN < 1.0;
             assert_eq!(
-                said_and_done(resting_discs(&[9.0]), |disc| disc.state[3] = speed),
+                said_and_done(resting_discs(&[9.0]), |disc| disc.state_mut()[3] = speed),
                 [expected; 2],
                 "{speed} m/s"
             );
@@ -192,8 +191,9 @@ mod tests {
     fn a_block_that_rolls_over_a_round_corner_stays_up_to_its_ends() {
         let spins = (0..=60).map(|index| 0.25 * f64::from(index));
         let answers = spins.map(|spin| {
-            let [said, done] =
-                said_and_done(block_on_its_corner(), |block| turn_on_its_corner(block, block.state[2], spin));
+            let [said, done] = said_and_done(block_on_its_corner(), |block| {
+                turn_on_its_corner(block, block.state()[2], spin)
+            });
             assert!(done || !said, "{spin} rad/s");
             [said, done]
         });

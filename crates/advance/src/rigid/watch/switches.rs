@@ -4,7 +4,7 @@ use crate::rigid::connectors::store::Stop;
 use crate::rigid::contacts::rows::moving_of;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
-use crate::rigid::group::state::{Group, SegmentEnd};
+use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::watch::crossing::{between_nodes, first_fall, node};
 use crate::rigid::watch::earliest::Earliest;
 
@@ -27,7 +27,7 @@ const SIGN_AT: f64 = 1.0 / 1024.0;
 /// rail a point that has gone by a stop seems to have come round: laps are told apart by the value read before.
 pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {
     let lap = lap_of(dynamics, stop);
-    let mut reach = dynamics.group.span;
+    let mut reach = dynamics.group.span();
     for _ in 0..MOST_SHORTER {
         let mut values = sample_stop(dynamics, stop, reach, lap);
         let touches = values[0] <= 0.0;
@@ -45,7 +45,7 @@ pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> 
 /// Offset [s] at which the point of a stop on a closed rail passes it from behind, where it does not hold the
 /// point: from then on it does.
 pub(crate) fn find_passing(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {
-    let (lap, span) = (lap_of(dynamics, stop)?, dynamics.group.span);
+    let (lap, span) = (lap_of(dynamics, stop)?, dynamics.group.span());
     let values = sample_stop(dynamics, stop, span, Some(lap));
     let room = |value: f64| lap + stop.slack - value;
     first_fall(&values.map(room), span, |offset| {
@@ -74,19 +74,19 @@ fn sample_stop(dynamics: &mut Dynamics<'_>, stop: Stop, reach: f64, lap: Option<
 fn stop_at(dynamics: &mut Dynamics<'_>, stop: Stop, offset: f64) -> f64 {
     dynamics.place_at(offset);
     let connector = &dynamics.physics.mechanism.connectors[stop.id.index()];
-    let [a, b] = connector.bodies().map(|body| moving_of(&dynamics.stage.movings, body));
+    let [a, b] = connector.bodies().map(|body| moving_of(dynamics.stage.movings(), body));
     connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
 }
 
 fn switch_at(dynamics: &mut Dynamics<'_>, law: usize, index: usize, offset: f64) -> f64 {
     dynamics.place_at(offset);
-    let now = dynamics.physics.snapshot(dynamics.start.seconds() + offset, &dynamics.stage.movings);
+    let now = dynamics.physics.snapshot(dynamics.start.seconds() + offset, dynamics.stage.movings());
     dynamics.physics.laws[law].switch(index, &now)
 }
 
 /// Offset [s] of the first change of sign of a switching function.
 pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> Option<f64> {
-    let (span, sign_at, sign) = (dynamics.group.span, sign_at(dynamics), sign_before(dynamics, law, index));
+    let (span, sign_at, sign) = (dynamics.group.span(), sign_at(dynamics), sign_before(dynamics, law, index));
     let values = std::array::from_fn(|node_index| {
         let value = sign * switch_at(dynamics, law, index, node(node_index, span));
         if node_index == 0 { value.max(0.0) } else { value }
@@ -102,8 +102,8 @@ pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize)
 /// next step would have to go over it, however short. Dense output reaches that far beyond its end.
 pub(crate) fn find_switch_at_end(dynamics: &mut Dynamics<'_>) -> Option<f64> {
     let mut earliest = Earliest::default();
-    for place in 0..dynamics.group.laws.len() {
-        let law = dynamics.group.laws[place];
+    for place in 0..dynamics.group.laws().len() {
+        let law = dynamics.group.laws()[place];
         for index in 0..dynamics.physics.laws[law].switches() {
             earliest.offer(find_change_at_end(dynamics, law, index), SegmentEnd::Switch);
         }
@@ -114,7 +114,7 @@ pub(crate) fn find_switch_at_end(dynamics: &mut Dynamics<'_>) -> Option<f64> {
 /// Offset [s] just after the end of the segment at which one switching function has changed its sign.
 fn find_change_at_end(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> Option<f64> {
     let (span, tick, sign) =
-        (dynamics.group.span, dynamics.clock_ticks(1.0), sign_before(dynamics, law, index));
+        (dynamics.group.span(), dynamics.clock_ticks(1.0), sign_before(dynamics, law, index));
     let offsets = TICKS_AFTER_END.map(|ticks| span + (ticks * tick).min(LOOK_AHEAD * span));
     let is_changed =
         |dynamics: &mut Dynamics<'_>, offset| sign * switch_at(dynamics, law, index, offset) < 0.0;
@@ -138,7 +138,8 @@ fn sign_before(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> f64 {
 
 /// Offset [s] at which the signs of switching functions are read.
 fn sign_at(dynamics: &Dynamics<'_>) -> f64 {
-    let Group { span, start, made, .. } = *dynamics.group;
+    let group = &*dynamics.group;
+    let (span, start, made) = (group.span(), group.start(), group.made());
     if start == made { span * SIGN_AT } else { 0.0 }
 }
 
@@ -150,7 +151,7 @@ fn beyond_switch(dynamics: &mut Dynamics<'_>, (law, index): (usize, usize), sign
     let tick = dynamics.clock_ticks(1.0);
     let mut wait = tick;
     for _ in 0..MOST_TICKS {
-        if offset + wait + tick >= dynamics.group.span {
+        if offset + wait + tick >= dynamics.group.span() {
             break;
         }
         if sign * switch_at(dynamics, law, index, offset + wait) < 0.0 {
@@ -219,10 +220,9 @@ mod tests {
         let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(clock)], ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::ZERO);
         let mut group = rooms.groups.take(body).expect("the law makes a group");
-        group.start = later;
-        group.made = if is_first { later } else { Time::ZERO };
+        group.set_times(later, if is_first { later } else { Time::ZERO });
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
-            dynamics.group.span = 1.0;
+            dynamics.group.set_span(1.0);
             find_switch(dynamics, 0, 0)
         })
     }

@@ -32,10 +32,10 @@ const HASTE: f64 = 1e-4;
 /// memory, to be returned once the event is over.
 pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
     let pace = &mut zeno.paces[group.leader().index()];
-    if let Some(mean) = pace.few.note(group.start) {
+    if let Some(mean) = pace.few.note(group.start()) {
         pace.is_hasty = mean < HASTE * assembly.settings().resolution_time;
     }
-    let mean = pace.all.note(group.start);
+    let mean = pace.all.note(group.start());
     zeno.crawls = None;
     let Some(step) = mean else { return };
     let crawls = step * HOPELESS < zeno.duration;
@@ -46,31 +46,32 @@ pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
         return;
     }
     zeno.crawls = Some(fast.unwrap_or_else(|| AdvanceError::Crawls {
-        time: group.start.seconds(),
+        time: group.start().seconds(),
         step,
         duration: zeno.duration,
-        bodies: group.bodies.clone(),
+        bodies: group.bodies().to_vec(),
         laws: names_of_laws(assembly, group),
     }));
 }
 
 /// Error of a body of a group that turns too often in the time to be simulated, and is stepped turn by turn.
 fn turns_without_end(assembly: &Assembly, zeno: &Zeno, group: &Group, step: f64) -> Option<AdvanceError> {
-    let elapsed = group.start.since(assembly.start());
-    group.bodies.iter().enumerate().find_map(|(place, &body)| {
-        let BodyState { angle, angular_velocity, .. } = body_state(&group.state, group.bodies.len(), place);
+    let elapsed = group.start().since(assembly.start());
+    group.bodies().iter().enumerate().find_map(|(place, &body)| {
+        let BodyState { angle, angular_velocity, .. } =
+            body_state(group.state(), group.bodies().len(), place);
         // One that swings to and fro does not get anywhere; one that turns more than once in a step is not
         // followed.
         let mean = assembly.flyer(body).with_turns(angle).abs() / elapsed;
         let is_followed = angular_velocity.abs() * step < TAU;
         let spin = mean.min(angular_velocity.abs()).copysign(angular_velocity);
-        if is_followed { too_fast(zeno, body, spin, group.start) } else { None }
+        if is_followed { too_fast(zeno, body, spin, group.start()) } else { None }
     })
 }
 
 /// Names of the laws that act on a group.
 pub(crate) fn names_of_laws(assembly: &Assembly, group: &Group) -> Vec<String> {
-    group.laws.iter().map(|&law| assembly.laws().all[law].name().to_owned()).collect()
+    group.laws().iter().map(|&law| assembly.laws().all[law].name().to_owned()).collect()
 }
 
 /// Forgets the steps of bodies that have taken part in an impact: their groups make progress.
@@ -104,7 +105,8 @@ mod tests {
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         for _ in 0..=FEW_STEPS {
             note_pace(&rooms.assembly, &mut rooms.zeno, &group);
-            group.start = group.start.plus(step);
+            let (start, made) = (group.start().plus(step), group.made());
+            group.set_times(start, made);
         }
         [take_haste(&mut rooms.zeno, work.region.bodies()), take_haste(&mut rooms.zeno, work.region.bodies())]
     }
