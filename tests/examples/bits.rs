@@ -24,6 +24,9 @@ const LONGEST: u32 = 1500;
 /// Threads that run scenes.
 const JOBS: usize = 2;
 
+/// The name of a kind of generated scenes, and the scene of a seed.
+type Kind = (&'static str, fn(u64) -> Value);
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let place = arguments.iter().position(|argument| argument == "--count");
@@ -38,7 +41,7 @@ fn main() {
         Scene::read(data(&format!("scenes/{}.json", names[index]))).expect("a fine scene")
     });
     let mut groups = vec![("repository", of_repository), ("reference", reference)];
-    let kinds: [(&str, fn(u64) -> Value); 4] = [
+    let kinds: [Kind; 4] = [
         ("ordinary", scene_of_seed),
         ("coarse", coarse_of_seed),
         ("impulses", impulses_of_seed),

@@ -1,20 +1,28 @@
 //! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by
 //! pair, events located at their time.
 //!
-//! | room | contents |
-//! |---|---|
-//! | `motion` | one body: its state, its path along a segment; the trait of force laws |
-//! | `step` | groups of bodies that share steps: equations of motion, steps, projection |
-//! | `ending` | events that end a step early: release, feature change, stops |
-//! | `search` | prediction of the next contact of each pair: boxes, pairs, predictions, rules |
-//! | `event` | handling of an event: regions, impacts, groups merged and split, ropes, ticks |
-//! | `held` | choice of the contacts and connectors that are held after an event |
-//! | `limits` | motions too small to resolve and event sequences without end: bounces, hops, storms, pace |
+//! Each folder is a room. A room may use those above it in this table, and none below; what it guarantees is stated in its
+//! `mod.rs`.
 //!
-//! `system` ties all rooms to the event loop. `parts` lists the parts of a system, `scales` turns a tolerance into
-//! thresholds for a scene, `intervention` is a change of velocities by the caller, `laws` the force laws, `by_body` and
-//! `forest` lists and sets of bodies, `sources` the numbering of events in the queue, `ledger` the energy balance,
-//! `report` the forces and contact changes that callers may ask for, `error` the reasons why an advance stops.
+//! | room | question it answers |
+//! |---|---|
+//! | `bodies` | where is a body, how does it move, what acts on it? |
+//! | `connectors` | where is the point of a rail, is a rope taut, what is the row of a connector? |
+//! | `contacts` | which pairs are near each other, what touched lately, what is the row of a contact? |
+//! | `sinking` | how far may a contact sink that carries impulses only? |
+//! | `search` | when does each pair meet next? |
+//! | `group` | how do bodies move that share their steps? |
+//! | `watch` | which event ends a step early? |
+//! | `books` | where did energy go, what are callers told? |
+//! | `zeno` | is this one event or step too many? |
+//! | `region` | what touches around an event? |
+//! | `impact` | which impulses? |
+//! | `held` | which rows are held afterwards? |
+//! | `event` | what is done, in which order? |
+//!
+//! `system` is what callers see of all this. `parts` lists the parts of a system, `settings` how it is run, `scales` turns a
+//! tolerance into thresholds for a scene, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error`
+//! the reasons why an advance stops.
 
 mod agenda;
 mod bodies;

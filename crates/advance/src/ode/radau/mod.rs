@@ -6,21 +6,17 @@
 //! II, 2nd ed., Springer 1996, IV.8 ("HW" in this room).
 
 mod coefficients;
+mod linearised;
 
-use super::linear::{Factors, dot};
+use super::linear::Factors;
 use super::polynomial::{NESTED, SegmentPolynomial};
 use super::{Ode, Point};
 use coefficients::{BACK, ERROR, FORTH, NODES, PAIR, REAL, STAGES};
+use linearised::slopes_of;
 use std::ops::Range;
 
 /// Correction left, as a fraction of the acceptable error, at which Newton's method has converged.
 const CONVERGED: f64 = 1e-2;
-/// Multiple of the state's rounding below which corrections cannot be told from none.
-const ROUNDINGS: f64 = 16.0;
-/// Number of patterns of signs with which the rounding of the rates is tried.
-const SIGN_PATTERNS: u32 = 4;
-/// Odd number near 2^32 over the golden ratio, whose multiples are spread evenly.
-const GOLDEN: u32 = 0x9e37_79b9;
 /// Fraction of a correction that is taken to be left to correct, at least, however much smaller it is than the one
 /// before: the first is the whole way of the step, and its slow part may hide that the fast part has yet to follow.
 const LEAST_LEFT: f64 = 1e-2;
@@ -36,11 +32,6 @@ const UNTOLD: f64 = 1e-10;
 /// Least length of a difference, as a fraction of a component, so that the rounding of the rates does not matter;
 /// otherwise differences are taken over the acceptable error.
 const LEAST_DIFFERENCE: f64 = 1e6 * f64::EPSILON;
-/// Least size of the first component that the power method goes on from, as a fraction of its vector's size; less for
-/// those after it.
-const STIRRED: f64 = 1e-3;
-/// Number of turns of the power method in one step.
-const TURNS: usize = 4;
 
 /// The implicit method, with its last step.
 #[derive(Clone, Debug, Default)]
@@ -221,33 +212,6 @@ impl Radau {
         self.real.factorize() && self.pair.factorize()
     }
 
-    /// Finds the rounding of the components: each one's own, and what the rounding of the rates does to it, since a fast
-    /// part follows that. Rates are rounded with either sign: the largest of a few patterns of signs counts.
-    fn find_rounding(&mut self) {
-        let rounding = |value: &f64| ROUNDINGS * f64::EPSILON * value.abs();
-        self.rate_rounding.clear();
-        self.rate_rounding.extend(slopes_of(&self.jacobian, self.active).map(|slopes| {
-            slopes.iter().zip(&self.start).map(|(slope, value)| slope.abs() * rounding(value)).sum::<f64>()
-        }));
-        self.rounding.clear();
-        self.rounding.resize(self.active, 0.0);
-        for pattern in 0..SIGN_PATTERNS {
-            let of_rates = &mut self.right[..self.active];
-            for (row, (of_rate, &size)) in of_rates.iter_mut().zip(&self.rate_rounding).enumerate() {
-                *of_rate = if is_negative(pattern, row) { -size } else { size };
-            }
-            if self.solved {
-                self.real.solve(of_rates);
-            }
-            for (found, of_rate) in self.rounding.iter_mut().zip(of_rates) {
-                *found = found.max(of_rate.abs());
-            }
-        }
-        for (found, value) in self.rounding.iter_mut().zip(&self.start) {
-            *found += rounding(value);
-        }
-    }
-
     /// Solves the equations of the stages; false if the corrections do not converge.
     fn solve_stages<S: Ode + ?Sized>(&mut self, system: &mut S, from: Point<'_>) -> Result<bool, S::Error> {
         self.stages.iter_mut().chain(&mut self.split).for_each(|row| row.fill(0.0));
@@ -342,42 +306,6 @@ impl Radau {
             *error = beyond(*error, *rounding);
         }
     }
-
-    /// Finds the largest eigenvalue in size, by a few turns of the power method, which goes on from step to step.
-    fn find_fastest(&mut self) {
-        let active = self.active;
-        if self.fastest.len() != active {
-            self.fastest.clear();
-            self.fastest.resize(active, 1.0);
-        }
-        let mut rate = 0.0;
-        self.stir();
-        for _ in 0..TURNS {
-            let norm = root_mean_square(&self.fastest, &self.scales);
-            if norm == 0.0 || !norm.is_finite() {
-                self.fastest.fill(1.0);
-                break;
-            }
-            for (row, slopes) in slopes_of(&self.jacobian, active).enumerate() {
-                self.right[row] = dot(slopes, &self.fastest) / norm;
-            }
-            self.fastest.copy_from_slice(&self.right[..active]);
-            rate = root_mean_square(&self.fastest, &self.scales);
-        }
-        self.stiffness = (rate * self.length).abs();
-    }
-
-    /// Gives every component of the power method's vector a least size: a slow part, of which nothing is left there,
-    /// may have become fast. Neighbours differ, for a part that pulls all alike is not fast.
-    fn stir(&mut self) {
-        let norm = root_mean_square(&self.fastest, &self.scales);
-        for (index, (component, scale)) in self.fastest.iter_mut().zip(&self.scales).enumerate() {
-            let least = STIRRED * norm * scale / (1.0 + index as f64);
-            if component.abs() < least {
-                *component = least;
-            }
-        }
-    }
 }
 
 /// Excess of a number's size over its rounding, 0 if there is none; NaN stays NaN.
@@ -385,17 +313,7 @@ fn beyond(number: f64, rounding: f64) -> f64 {
     if number.abs() <= rounding { 0.0 } else { number.abs() - rounding }
 }
 
-/// Sign of a row in a pattern of signs: all are positive in the first one, and mixed in the others.
-fn is_negative(pattern: u32, row: usize) -> bool {
-    (row as u32).wrapping_add(1).wrapping_mul(pattern.wrapping_mul(GOLDEN)) >> 31 == 1
-}
-
 /// Root of the mean of the squares of the first numbers, each divided by its scale.
 fn root_mean_square(numbers: &[f64], scales: &[f64]) -> f64 {
     super::explicit::mean_square(&numbers[..scales.len()], scales).sqrt()
-}
-
-/// Rows of a Jacobian of a number of components; none if there are no components.
-fn slopes_of(jacobian: &[f64], components: usize) -> std::slice::ChunksExact<'_, f64> {
-    jacobian.chunks_exact(components.max(1))
 }

@@ -1,5 +1,12 @@
-//! The motion of single bodies: a body with its segment (`flyer`), its motion along the segment (`path`), the copy of
-//! it that predictions read (`lane`), and the trait of force laws (`law`).
+//! Bodies: their motions at the present time, the laws that act on them, and every elementary query about them.
+//!
+//! **Invariant**: each trajectory is valid from its start to the present time; a fixed body never moves; whole turns are
+//! taken out of angles only where a flight starts. The room knows no contact and no connector; of groups it knows who
+//! leads a body, and until when.
+//!
+//! `assembly`: all bodies, what others ask first · `flyer`: one body and its segment · `path`: the motion along it ·
+//! `thresholds`: what counts as rest, and as deep · `law`, `laws`, `by_body`: force laws and where they act · `squeezed`:
+//! masses too different to be held together · `instant`: when two events are at one time.
 
 pub(super) mod assembly;
 pub(super) mod by_body;
@@ -9,3 +16,4 @@ pub(super) mod law;
 pub(super) mod laws;
 pub(super) mod path;
 pub(super) mod squeezed;
+pub(super) mod thresholds;

@@ -1,10 +1,10 @@
-//! TODO
+//! Kinetic energy in the books, and motions that are cut short.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::ImpactReport;
-use crate::rigid::group::dynamics::body_state;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::time::Time;
 use halfgap_collision::BodyId;

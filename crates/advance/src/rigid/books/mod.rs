@@ -1,4 +1,10 @@
 //! The books: counts, energy by cause, and what callers are told of the last event.
+//!
+//! **Invariant**: every joule that an event or a projection adds or takes is booked once, under its cause. The books decide
+//! nothing.
+//!
+//! `all`: the books of a system · `counts`, `ledger`, `report`: their parts · `works`: the ledger within present segments ·
+//! `forces`: those of held rows · `impacts`, `energy`: what is booked when.
 
 pub(super) mod all;
 pub(super) mod counts;

@@ -140,6 +140,26 @@ pub struct ImpactReport {
     pub states: Vec<(BodyId, BodyState)>,
 }
 
+impl ImpactReport {
+    /// Begins the report of an impact at a time.
+    pub(crate) fn begin(&mut self, time: Time) {
+        (self.time, self.energy_change) = (time, 0.0);
+        self.rows.clear();
+        self.states.clear();
+    }
+
+    /// Adds a row and its change of the kinetic energy [J].
+    pub(crate) fn add(&mut self, row: RowReport, energy: f64) {
+        self.rows.push(row);
+        self.energy_change += energy;
+    }
+
+    /// Adds states of bodies after the impact.
+    pub(crate) fn add_states(&mut self, states: impl Iterator<Item = (BodyId, BodyState)>) {
+        self.states.extend(states);
+    }
+}
+
 impl Told {
     // getters of Told
     /// The changes.

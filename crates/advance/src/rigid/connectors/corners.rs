@@ -1,4 +1,4 @@
-//! TODO
+//! Points of rails that come to a corner of their path, and the side along which they go on.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::ends::end_rooms;

@@ -1,4 +1,4 @@
-//! Connectors in events: their records in a region, and when ropes go taut.
+//! All connectors with their states, and how their rows are measured.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::by_body::ByBody;
@@ -200,6 +200,18 @@ pub(crate) struct Stop {
     pub(crate) slack: f64,
     /// The place that its point has come to is noted: its body is about to leave the segment.
     pub(crate) is_noted: bool,
+}
+
+impl Stop {
+    /// Sets the place of its point at the start of a segment.
+    pub(crate) fn renew(&mut self, hint: Option<RailHint>) {
+        (self.hint, self.is_noted) = (hint, false);
+    }
+
+    /// Notes that the place to which its point has come is known.
+    pub(crate) fn note(&mut self) {
+        self.is_noted = true;
+    }
 }
 
 impl Connectors {

@@ -1,4 +1,4 @@
-//! TODO
+//! Gap and rate of two features, also beyond their ends.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;

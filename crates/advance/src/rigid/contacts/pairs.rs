@@ -313,12 +313,6 @@ impl PairPast {
     pub(crate) fn repeats(&self) -> u32 {
         self.repeats
     }
-
-    /// Number of times in succession that the search for the next contact went on.
-    #[inline]
-    pub(crate) fn searches(&self) -> u32 {
-        self.searches
-    }
 }
 
 impl Pair {

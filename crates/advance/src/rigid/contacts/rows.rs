@@ -2,25 +2,19 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::flyer::Flyer;
-use crate::rigid::connectors::ends::rail_room;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::touch::Touch;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, Detector, GapKinematics, Moving, RailHint, Tolerances,
-    contact_levers,
 };
 use halfgap_contact::CollisionRow;
 use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
 
 /// Fraction of `accuracy` by which a contact may run off its features before it counts as changed: more than the
 /// rounding by which a contact that has run off is still detected, far less than forces are sensitive to.
-const CHANGE_SHARE: f64 = 1.0 / 64.0;
-
-/// Fraction of `accuracy` above which a corner counts as leaning off its line: less than `CHANGE_SHARE`, at which the
-/// change is an event, so that it is one only once.
-const LEAN_SHARE: f64 = 0.5 * CHANGE_SHARE;
+pub(crate) const CHANGE_SHARE: f64 = 1.0 / 64.0;
 
 /// Origin of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +65,7 @@ pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> &Moving {
 }
 
 impl Mechanism<'_> {
-    fn shape(&self, body: BodyId) -> &Shape {
+    pub(crate) fn shape(&self, body: BodyId) -> &Shape {
         &self.flyers[body.index()].body().shape
     }
 
@@ -197,138 +191,6 @@ impl Mechanism<'_> {
     pub(crate) fn change_margin(&self) -> f64 {
         CHANGE_SHARE * self.tolerances.accuracy
     }
-
-    /// Distance [m] from a held row to the end of its features or its piece of a rail; negative once it has run off.
-    /// `None` for rows that cannot.
-    pub(crate) fn way_to_end(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
-        if !self.can_change(row) {
-            return None;
-        }
-        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
-        match row.source {
-            RowSource::Connector(id, _) => {
-                let connector = &self.connectors[id.index()];
-                let path = connector.path()?;
-                rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
-            }
-            RowSource::Contact(features) => {
-                let sample = self.sample(row.bodies, features, [a, b]);
-                let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };
-                let outside = sample.overrun.max(lean);
-                let inside = || self.inside(&sample, row, features, [a, b]);
-                Some(self.change_margin() + if outside > 0.0 { -outside } else { inside() })
-            }
-        }
-    }
-
-    /// Distance [m] from a contact that lies within its features to their ends; on an arc, the angle to its end times a
-    /// lever.
-    fn inside(
-        &self,
-        sample: &GapSample,
-        row: &HeldRow,
-        features: [FeatureId; 2],
-        movings: [&Moving; 2],
-    ) -> f64 {
-        let shapes = row.bodies.map(|body| self.shape(body));
-        let levers = contact_levers([0, 1].map(|side| (shapes[side], features[side])));
-        let to_ends = |side: usize| {
-            let (is_primary, pose) = ((side == 0) == sample.primary_is_a, &movings[side].pose);
-            match shapes[side].feature(features[side]) {
-                Feature::Line(line) => {
-                    let along = pose.point_to_body(sample.point_normal).dot(line.normal.perp());
-                    (along - line.start).min(line.end - along)
-                }
-                Feature::Round(_) if row.leans => f64::INFINITY,
-                Feature::Round(round) => {
-                    let sign = if is_primary { -round.sign() } else { round.sign() };
-                    levers[side] * round.range.margin(pose.vector_to_body(sample.normal * sign))
-                }
-            }
-        };
-        to_ends(0).min(to_ends(1)).max(0.0)
-    }
-
-    /// Distance [m] by which a contact lies beyond the ends of its lines and arcs. A gap is measured as if these had no
-    /// ends, so that after half a turn it would be to the back of the other body. The lean of a sharp corner does not
-    /// count.
-    pub(crate) fn overrun(
-        &self,
-        bodies: [BodyId; 2],
-        features: [FeatureId; 2],
-        movings: [&Moving; 2],
-    ) -> f64 {
-        let mut sample = self.sample(bodies, features, movings);
-        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
-        sample.find_excess([0, 1].map(|side| (feature(side), &movings[side].pose)));
-        let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
-        let of_arc = |(side, excess): (usize, f64)| match feature(side) {
-            Feature::Round(round) => excess * round.radius.abs(),
-            Feature::Line(_) => 0.0,
-        };
-        let arcs = sides.into_iter().zip([sample.excess_primary, sample.excess_normal]);
-        arcs.map(of_arc).fold(sample.overrun, f64::max)
-    }
-
-    /// True if a row is a corner that leans off its line already: leaning further is no change.
-    pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
-        let RowSource::Contact(features) = row.source else { return false };
-        let sample = self.sample(row.bodies, features, movings);
-        if !self.is_corner_on_line(&sample, row.bodies, features, movings) {
-            return false;
-        }
-        self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
-    }
-
-    /// True if a contact outside of its features has left them: a corner that leans off its line has not.
-    pub(crate) fn has_left(
-        &self,
-        bodies: [BodyId; 2],
-        features: [FeatureId; 2],
-        movings: [&Moving; 2],
-    ) -> bool {
-        let sample = self.sample(bodies, features, movings);
-        sample.overrun > 0.0 || !self.is_corner_on_line(&sample, bodies, features, movings)
-    }
-
-    /// True for a corner on a line, sharp or round, beyond which its body goes on straight. If the body leans a little,
-    /// so that its next corner is nearer to the line, the first one still touches: so a block rocks from one corner to
-    /// the other.
-    fn is_corner_on_line(
-        &self,
-        sample: &GapSample,
-        bodies: [BodyId; 2],
-        features: [FeatureId; 2],
-        movings: [&Moving; 2],
-    ) -> bool {
-        let feature = |side: usize| self.shape(bodies[side]).feature(features[side]);
-        let round = match (feature(0), feature(1)) {
-            (Feature::Round(_), Feature::Line(_)) => 0,
-            (Feature::Line(_), Feature::Round(_)) => 1,
-            _ => return false,
-        };
-        let is_sharp = feature(round).radius() == Some(0.0);
-        is_sharp || {
-            let direction = movings[round].pose.vector_to_body(-sample.normal);
-            self.shape(bodies[round]).goes_on_straight(features[round], direction)
-        }
-    }
-
-    /// Distance [m] by which a contact lies outside of its features: the angle beyond their ends times a lever.
-    fn lean(
-        &self,
-        mut sample: GapSample,
-        bodies: [BodyId; 2],
-        features: [FeatureId; 2],
-        movings: [&Moving; 2],
-    ) -> f64 {
-        let shape = |side: usize| self.shape(bodies[side]);
-        let feature = |side: usize| (shape(side).feature(features[side]), &movings[side].pose);
-        sample.find_excess([feature(0), feature(1)]);
-        let levers = contact_levers([0, 1].map(|side| (shape(side), features[side])));
-        let [primary, normal] = if sample.primary_is_a { levers } else { [levers[1], levers[0]] };
-        (sample.excess_primary * primary).max(sample.excess_normal * normal)
-    }
 }
 
 fn is_full(feature: &Feature) -> bool {
@@ -364,6 +226,16 @@ pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) 
 }
 
 impl HeldRow {
+    /// Sets the gap [m] at which it is held, or fires.
+    pub(crate) fn set_gap(&mut self, gap: f64) {
+        self.gap = gap;
+    }
+
+    /// Sets the place near which its point on a rail is sought.
+    pub(crate) fn set_hint(&mut self, hint: Option<RailHint>) {
+        self.hint = hint;
+    }
+
     /// The features of a contact; `None` for a connector's row.
     pub(crate) fn touch(&self) -> Option<Touch> {
         match self.source {

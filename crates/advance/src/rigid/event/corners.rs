@@ -1,4 +1,4 @@
-//! TODO
+//! Points of rails that rest in a corner and are not held there by two forces: they leave it along one of its sides.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::impacts::{Booking, book_impact};

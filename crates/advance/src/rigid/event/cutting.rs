@@ -15,8 +15,8 @@ use crate::rigid::contacts::touch::Touch;
 use crate::rigid::event::life::{complete_dense, dissolve};
 use crate::rigid::event::rails::note_ways;
 use crate::rigid::event::rooms::Rooms;
-use crate::rigid::group::dynamics::body_state;
 use crate::rigid::group::groups::{Groups, put_group, with_group};
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::records::gap_of_cause;
@@ -173,7 +173,7 @@ fn is_in_another(assembly: &Assembly, pairs: &Pairs, body: BodyId, region: &Regi
         let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
         finite
             && !region.touches().iter().any(touches)
-            && shape(body).relation(&pose(body), &shape(other), &pose(other)) == Relation::Crossing
+            && shape(body).relation(&pose(body), shape(other), &pose(other)) == Relation::Crossing
     })
 }
 

@@ -1,4 +1,4 @@
-//! Handling of an event: cut the groups that it touches at its time, resolve the impact, find the held rows, go on.
+//! Events by their source: the start, a contact, the end of a segment, a rope.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::corners::{go_along, note_corners};
@@ -14,9 +14,8 @@ use crate::rigid::event::groups::let_go;
 use crate::rigid::event::impacting::{collide, handle_impact};
 use crate::rigid::event::joints::{meet_stop, pass_joint};
 use crate::rigid::event::life::{continue_group, look_further};
-use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::event::ticks::{note_pressed, sinks};
-use crate::rigid::event::with_work::with_work;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::group_of;
 use crate::rigid::group::state::SegmentEnd;

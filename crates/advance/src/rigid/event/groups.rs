@@ -1,4 +1,4 @@
-//! The life of groups: made after an event from held rows and force laws, extended step by step, cut by the next event.
+//! Groups are made of the bodies of a region that held rows or force laws couple, and hand back what they watch in vain.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::{Connectors, is_rope};

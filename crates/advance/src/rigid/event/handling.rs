@@ -2,13 +2,13 @@
 
 use crate::rigid::agenda::Source;
 use crate::rigid::books::report::Handled;
-use crate::rigid::contacts::pairs::Prediction;
+use crate::rigid::contacts::pairs::{PairId, Prediction};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::events::{handle_contact, handle_group, handle_rope};
 use crate::rigid::event::life::complete_dense;
 use crate::rigid::event::rooms::Rooms;
-use crate::rigid::event::search_on::search_on;
 use crate::rigid::event::ticks::handle_tick;
+use crate::rigid::zeno::turns::note_search;
 use crate::time::Time;
 
 /// Runs an event at a time and returns its report; `None` if callers need not know of it.
@@ -53,4 +53,10 @@ pub(crate) fn handle(rooms: &mut Rooms, source: Source) -> Result<(), AdvanceErr
         },
     }
     Ok(())
+}
+
+/// Goes on with the search for a pair's next contact.
+pub(crate) fn search_on(rooms: &mut Rooms, pair: PairId) {
+    rooms.searching().predict(pair);
+    note_search(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair);
 }

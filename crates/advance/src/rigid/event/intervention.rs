@@ -1,4 +1,5 @@
-//! TODO
+//! Velocity changes by the caller: they take effect at once, and contacts and connectors respond as to an impact. Forces
+//! that last are laws.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;

@@ -1,4 +1,4 @@
-//! TODO
+//! Points of rails that come to a joint, and ropes and stops that fire.
 
 use crate::rigid::connectors::corners::{pass_joints_beside, stop_in_corner};
 use crate::rigid::error::AdvanceError;

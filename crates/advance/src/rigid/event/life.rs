@@ -1,4 +1,4 @@
-//! TODO
+//! The life of a group: started after an event, extended step by step, ended by the next event.
 
 use crate::rigid::agenda::{Agenda, Source};
 use crate::rigid::bodies::assembly::Assembly;
@@ -11,8 +11,8 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::event::rails::{note_hints, note_ways, renew_hints};
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::attempt::StepFailure;
-use crate::rigid::group::dynamics::body_state;
 use crate::rigid::group::groups::{Groups, part, put_group, with_group};
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::region::touching::Region;
 use crate::rigid::search::neighbourhood::Neighbourhood;
@@ -140,13 +140,8 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
         });
     if outcome.is_err() && group.stiffness().is_stiff() {
         group.retry_explicitly(next_step, rooms.assembly.settings().method);
-        outcome = with_group(
-            &rooms.assembly,
-            &rooms.connectors,
-            &mut rooms.groups,
-            &mut group,
-            |dynamics, tools| extend_watched(dynamics, tools),
-        );
+        outcome =
+            with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, extend_watched);
     }
     rooms.books.note_segment();
     if let Err(failure) = outcome {

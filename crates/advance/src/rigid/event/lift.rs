@@ -1,4 +1,4 @@
-//! TODO
+//! Bodies that have sunk, where contacts carry impulses only, are put back by the least displacement.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::law::Snapshot;

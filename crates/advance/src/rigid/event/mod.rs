@@ -1,10 +1,17 @@
-//! Handling of an event. `events` is its order: `region` collects the bodies that touch, `cutting` takes them to the
-//! event's time, `impacts` applies impulses (`jams`: large impulses of contacts that cancel each other and can be
-//! avoided), `groups` merges and splits groups of bodies (`members`: the bodies, rows and touches of each; `harm`: groups
-//! whose rows move bodies into others are made anew).
-//! `connectors` predicts when a rope goes taut, `rails` finds where on its rail a point is, `corners` takes it through
-//! a corner; `ticks` stands in for forces where contacts carry impulses only. `cause` is the reason of an event, with
-//! its buffers. The rows held afterwards are found in `held`.
+//! Handling of an event: gather, impact, active set, groups, predict.
+//!
+//! **Invariant**: after an event no held contact pulls, no touching pair closes faster than at rest, every movable body is
+//! either in flight or in a group with a segment, and all predictions of the bodies involved are new. Only this room sees
+//! all others; it keeps nothing but buffers.
+//!
+//! * from the agenda: `handling`, `events` (by source), `joints` and `ticks` (points that come to a joint, sunk contacts);
+//! * velocities: `impacting`, `changing` (held rows change), `resolving`, `intervention` (by the caller), `lift` and `shift`
+//!   (sunk bodies are put back);
+//! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `harm` (groups made anew), `rules` (what the
+//!   search skips), `telling`;
+//! * groups: `coupling` and `members` (who shares steps), `groups` (made), `life` (from start to end), `cutting`, `rails`
+//!   (hints);
+//! * `rooms`: all rooms together · `work`: buffers.
 
 pub(super) mod changing;
 pub(super) mod corners;
@@ -26,10 +33,8 @@ pub(super) mod rails;
 pub(super) mod resolving;
 pub(super) mod rooms;
 pub(super) mod rules;
-pub(super) mod search_on;
 pub(super) mod settling;
 pub(super) mod shift;
 pub(super) mod telling;
 pub(super) mod ticks;
-pub(super) mod with_work;
 pub(super) mod work;

@@ -1,10 +1,10 @@
-//! TODO
+//! Hints for the places of points on rails, noted as regions are handled and groups go from segment to segment.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism};
-use crate::rigid::group::dynamics::body_state;
 use crate::rigid::group::groups::Groups;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::region::touching::Region;
 use crate::time::Time;

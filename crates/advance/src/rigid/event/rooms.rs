@@ -13,6 +13,7 @@ use crate::rigid::event::members::Members;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::parts::{BodyPart, RigidParts};
+use crate::rigid::region::cause::Cause;
 use crate::rigid::region::view::View;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::search::searching::Searching;
@@ -82,4 +83,20 @@ impl Rooms {
         let Self { assembly, connectors, sinking, pairs, search, groups, .. } = self;
         View { assembly, connectors, sinking, pairs, search, groups }
     }
+}
+
+/// Runs an action on an event of the given cause, with the buffers of events.
+pub(crate) fn with_work<T>(
+    rooms: &mut Rooms,
+    cause: Cause,
+    act: impl FnOnce(&mut Rooms, &mut EventWork) -> T,
+) -> T {
+    let mut work = rooms.work.take().unwrap_or_default();
+    work.region.set_cause(cause);
+    let outcome = act(rooms, &mut work);
+    work.region.set_cause(Cause::Other);
+    work.region.set_in_storm(false);
+    (work.repeats, work.fired_open) = (0, false);
+    rooms.work = Some(work);
+    outcome
 }

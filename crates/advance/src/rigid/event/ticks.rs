@@ -16,8 +16,7 @@ use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::event::impacting::handle_impact;
-use crate::rigid::event::rooms::Rooms;
-use crate::rigid::event::with_work::with_work;
+use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::sinking::depth::{
     BEHIND, DEEP_SHARE, DEEPEST_SHARE, FIRST_SHARE, FURTHER_SHARE, Sinking, room_to_sink,
@@ -180,6 +179,6 @@ mod tests {
         let expected = AdvanceError::Pressed { time, between, events, step };
         assert_eq!(notes(&mut rooms, 1), Some(expected));
         handle_tick(&mut rooms).expect("it can be put back");
-        assert_eq!(rooms.sinking.pressed(), 0);
+        assert_eq!(rooms.sinking.note_pressed(), 1, "counting begins anew");
     }
 }

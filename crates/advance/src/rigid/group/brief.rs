@@ -71,21 +71,4 @@ impl Group {
 
 impl Past {
     // getters of Past
-    /// Time [s] for which the group lasted.
-    #[inline]
-    pub(crate) fn lasted(&self) -> f64 {
-        self.lasted
-    }
-
-    /// Length [s] of the next step that was proposed, by the method asked for.
-    #[inline]
-    pub(crate) fn step(&self) -> Option<f64> {
-        self.step
-    }
-
-    /// The stiffness.
-    #[inline]
-    pub(crate) fn stiffness(&self) -> Stiffness {
-        self.stiffness
-    }
 }

@@ -1,6 +1,7 @@
 //! The energy of a group in a state, its change by a projection, and its loss in a step.
 
-use crate::rigid::group::dynamics::{Dynamics, body_state};
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
 use halfgap_collision::BodyId;

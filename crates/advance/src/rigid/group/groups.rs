@@ -4,8 +4,9 @@ use crate::ode::Method;
 use crate::rigid::bodies::assembly::{Assembly, Shared};
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::group::brief::Past;
-use crate::rigid::group::dynamics::{Dynamics, Stage};
+use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::physics::physics;
+use crate::rigid::group::stage::Stage;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::stepping::Steppers;
 use crate::rigid::group::tools::Tools;
@@ -213,27 +214,9 @@ impl Groups {
         &self.made
     }
 
-    /// Steps and depth of each body's last group.
-    #[inline]
-    pub(crate) fn past_of(&self) -> &[Past] {
-        &self.past_of
-    }
-
-    /// The pool.
-    #[inline]
-    pub(crate) fn pool(&self) -> &[Box<Group>] {
-        &self.pool
-    }
-
     /// The stage.
     #[inline]
     pub(crate) fn stage(&self) -> &Stage {
         &self.stage
-    }
-
-    /// Leader of the group whose dense output is deferred until it is read.
-    #[inline]
-    pub(crate) fn waiting(&self) -> Option<BodyId> {
-        self.waiting
     }
 }

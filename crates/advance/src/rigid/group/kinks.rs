@@ -2,7 +2,8 @@
 //! across loses the order of its method; one that ends there does not. Joints of lines and arcs are events (`watch`).
 
 use crate::rigid::contacts::rows::{HeldRow, RowSource};
-use crate::rigid::group::dynamics::{Dynamics, body_state};
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::settings::StepControl;
 use halfgap_collision::{Moving, first_closing_time};
 

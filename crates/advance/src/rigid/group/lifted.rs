@@ -16,7 +16,7 @@ impl Dynamics<'_> {
         let mechanism = &self.physics.mechanism;
         for row in idle {
             let gap = mechanism.gap(row, &self.stage.movings);
-            row.gap = row.gap.min(gap - mechanism.tolerances.sink());
+            row.set_gap(row.gap.min(gap - mechanism.tolerances.sink()));
         }
     }
 
@@ -32,7 +32,7 @@ impl Dynamics<'_> {
         for row in rows.iter_mut().filter(|row| !row.bilateral) {
             let gap = mechanism.gap(row, &self.stage.movings);
             if (gap - row.gap).abs() > mechanism.tolerances.sink() {
-                row.gap = gap;
+                row.set_gap(gap);
             }
         }
     }

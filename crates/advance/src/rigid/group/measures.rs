@@ -1,7 +1,8 @@
 //! Scales of a group's steps: its length, its speed, its rounding, and the errors that are just acceptable.
 
 use crate::ode::Stepper;
-use crate::rigid::group::dynamics::{Dynamics, body_state};
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;

@@ -1,14 +1,17 @@
-//! Steps of a `group` of bodies that move together, and of the `rows` it holds (contacts and connectors): from the
-//! equations of motion to the end of the step on the rows. Events that end a step early are in `ending`, those that
-//! begin a group in `event`.
+//! Groups: bodies that share their steps, from the equations of motion to the end of a step on the held rows.
 //!
-//! * equations of motion: `dynamics` in bodies, `tree` in angles where bodies hang together by pins; `on_rows` moves
-//!   stages onto rows that depend on each other; `singular` leads steps over the bifurcation points of closed `loops`;
-//! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures`; its method,
-//!   `brief` and `stiff`; its length where contacts are `watched` or splines have `kinks`; its end moved onto the rows,
-//!   `projection`; the energy it must keep, `energy`;
-//! * in time: `extending` adds a step to a group, `deferred` postpones its dense output until it is asked for,
-//!   `placing` evaluates where the bodies are along it.
+//! **Invariant**: between steps the state of a group lies on its held rows, and rates and forces are those of that state;
+//! dense output keeps to the rows within what the watch allows. The room knows no event and no search.
+//!
+//! * data: `state` (a group), `reading`, `making` (its members), `turning` (from one segment to the next), `groups` (all of
+//!   them), `stage` (buffers of one moment), `samples`;
+//! * equations of motion: `physics`, `dynamics` in bodies, `level`, `tree` in angles where bodies hang together by pins;
+//!   `on_rows` moves stages onto rows that depend on each other; `singular` leads steps over the bifurcation points of
+//!   closed `loops`;
+//! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures` and `inner`; its
+//!   method, `stepping`, `brief`, `stiff` and `stiffness`; its length where contacts are `watched` or splines have `kinks`;
+//!   its end moved onto the rows, `projection`; gaps at the start, `lifted`; the energy it must keep, `energy`;
+//! * in time: `extending` adds a step to a group, with its `tools`; `placing` evaluates where the bodies are along it.
 
 pub(super) mod attempt;
 pub(super) mod brief;
@@ -18,6 +21,7 @@ pub(super) mod extending;
 pub(super) mod groups;
 pub(super) mod inner;
 pub(super) mod kinks;
+pub(super) mod level;
 pub(super) mod lifted;
 pub(super) mod loops;
 pub(super) mod making;
@@ -26,9 +30,11 @@ pub(super) mod on_rows;
 pub(super) mod physics;
 pub(super) mod placing;
 pub(super) mod projection;
+pub(super) mod reading;
 pub(super) mod samples;
 pub(super) mod segment;
 pub(super) mod singular;
+pub(super) mod stage;
 pub(super) mod state;
 pub(super) mod stepping;
 pub(super) mod stiff;

@@ -3,7 +3,8 @@
 
 use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
 use crate::rigid::contacts::rows::RowSource;
-use crate::rigid::group::dynamics::{Dynamics, body_state};
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
@@ -108,7 +109,7 @@ impl Dynamics<'_> {
             let anchor = connector.anchors().0;
             let Ok(place) = bodies.binary_search(&anchor.body) else { continue };
             let point = body_state(end_state, bodies.len(), place).pose().point_to_world(anchor.point);
-            row.hint = Some(path.hint_near(point, Some(hint)).staying());
+            row.set_hint(Some(path.hint_near(point, Some(hint)).staying()));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::ode::Method;
 use crate::rigid::contacts::rows::{HeldRow, RowSource};
-use crate::rigid::group::dynamics::set_body_state;
+use crate::rigid::group::stage::set_body_state;
 use crate::rigid::group::state::{Group, SegmentEnd};
 use crate::time::Time;
 use halfgap_collision::{BodyId, BodyState, ConnectorId, RailHint};
@@ -84,7 +84,8 @@ impl Group {
 
     /// Lowers the gap [m] at which a contact without force fires.
     pub(crate) fn lower_idle_gap(&mut self, row: usize, way: f64) {
-        self.idle[row].gap -= way;
+        let gap = self.idle[row].gap - way;
+        self.idle[row].set_gap(gap);
     }
 
     /// Lends out how far rows had run off their features when that was first seen.
@@ -117,18 +118,17 @@ impl Group {
     ) {
         let Self { bodies, state, rows, stops, .. } = self;
         for stop in stops {
-            stop.is_noted = false;
-            stop.hint = of_stop(stop.id, found(bodies, state, stop.id, stop.hint.as_ref()));
+            stop.renew(of_stop(stop.id, found(bodies, state, stop.id, stop.hint.as_ref())));
         }
         for row in rows.iter_mut().filter(|row| is_wanted(row)) {
             if let RowSource::Connector(id, _) = row.source {
-                row.hint = found(bodies, state, id, row.hint.as_ref()).map(RailHint::staying);
+                row.set_hint(found(bodies, state, id, row.hint.as_ref()).map(RailHint::staying));
             }
         }
     }
 
     /// Notes that the place to which the point of a stop has come is known.
     pub(super) fn note_stop(&mut self, place: usize) {
-        self.stops[place].is_noted = true;
+        self.stops[place].note();
     }
 }

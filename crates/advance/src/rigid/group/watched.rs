@@ -3,7 +3,8 @@
 
 use crate::rigid::contacts::rows::{HeldRow, RowSource, moving_of};
 use crate::rigid::group::attempt::STEADY_GROWTH;
-use crate::rigid::group::dynamics::{Dynamics, body_state};
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::body_state;
 use glam::DVec2;
 use halfgap_collision::{GapKinematics, Moving, first_closing_time};
 use halfgap_geometry::GapKind;

@@ -1,7 +1,7 @@
 //! Contact forces so large that rows seem to work against each other.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::group::dynamics::Stage;
+use crate::rigid::group::stage::Stage;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::impact::jams::JAM;
 use crate::rigid::region::touching::Region;

@@ -7,7 +7,7 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{RowSource, mechanism, source_of};
-use crate::rigid::group::dynamics::Stage;
+use crate::rigid::group::stage::Stage;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use glam::DVec2;

@@ -1,8 +1,14 @@
-//! Choice of the rows that are held after an event. `settle` poses the problem of the candidates and chooses among
-//! them, `settling` has its buffers and solvers. `levers` finds contacts that connectors leave next to no lever,
-//! `redundant` contacts that can be spared, `leaving` contacts that end at once,
-//! `squeezed` bodies that are too light for what they carry.
+//! The active set: which rows are held after an event.
+//!
+//! **Invariant**: the rows chosen carry a force that pushes, in a solution in which no candidate accelerates into another.
+//! The room chooses; it moves nothing.
+//!
+//! `settle`: the problem of the candidates, and the order in which it is solved · `settling`: solvers and buffers ·
+//! `choosing`: which candidates are held, and at which gap · `hops`: contacts that open and close again at once · `jammed`:
+//! forces of rows that work against each other · `passing`, `levers`: contacts that act by next to no lever · `sparing`,
+//! `redundant`: candidates that depend on others · `leaving`: contacts that end at once.
 
+pub(super) mod choosing;
 pub(super) mod hops;
 pub(super) mod jammed;
 pub(super) mod leaving;

@@ -8,15 +8,14 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::squeezed::{HOPELESS_MASS_RATIO, LARGEST_MASS_RATIO};
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::bounces::formed_at;
-use crate::rigid::contacts::pairs::Pairs;
-use crate::rigid::contacts::rows::{HeldRow, RowSource, source_of, with_lean};
-use crate::rigid::contacts::touch::{DEEPEST, Touch};
+use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::{AdvanceError, Between};
-use crate::rigid::group::dynamics::{LEVEL, Stage};
 use crate::rigid::group::groups::Groups;
+use crate::rigid::group::level::LEVEL;
 use crate::rigid::group::physics::physics;
 use crate::rigid::group::segment::LONGEST_STEP;
+use crate::rigid::group::stage::Stage;
+use crate::rigid::held::choosing::{choose_rows, drop_idle, places_of};
 use crate::rigid::held::hops::{is_low_hop, may_hop};
 use crate::rigid::held::jammed::is_jammed;
 use crate::rigid::held::leaving::drop_leaving;
@@ -29,24 +28,8 @@ use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, Spin, Tolerances};
+use halfgap_collision::{BodyId, Collision, Spin};
 use halfgap_contact::SolveError;
-
-/// Depth below its zone from which a row is lifted, as a multiple of the distance by which a contact sinks at a time: a
-/// row that has just been lifted may sink once.
-const SUNK: f64 = 1.5;
-
-/// Distance beyond its end at which a rope or a stop is held when it is lifted, as a fraction of its `accuracy`.
-const ROPE_SHARE: f64 = 0.5;
-
-/// Least force of a contact to be held again just after its release, as a fraction of the loads of its bodies. With
-/// less it sinks so slowly that it may as well be touched again.
-const RELEASED_SHARE: f64 = 1e-3;
-
-/// Force of a contact that is rounding, as a fraction of the loads of its bodies; such a contact need not be held. A
-/// little more may keep a body in balance: a brick on the joint of two others, which stands on corners next to each
-/// other, would fall over without it.
-const IDLE_SHARE: f64 = 1e-13;
 
 /// Largest opening rate of a held contact in a hasty group, as a fraction of the rate at rest.
 pub(crate) const HASTY_SHARE: f64 = 1e-3;
@@ -300,107 +283,6 @@ fn pose_problem(assembly: &Assembly, region: &Region, settling: &mut Settling, s
     }
 }
 
-/// Drops the contacts that carry next to no force; true if any of them carries some at all.
-fn drop_idle(
-    assembly: &Assembly,
-    pairs: &Pairs,
-    region: &mut Region,
-    settling: &mut Settling,
-    stage: &Stage,
-) -> bool {
-    let Settling { candidates, solution, gross, .. } = settling;
-    // Loads [N] of each body: its own and those of its rows.
-    gross.clear();
-    let bodies = region.bodies().iter().zip(stage.accelerations());
-    gross.extend(bodies.map(|(&body, acceleration)| assembly.flyer(body).load(acceleration)));
-    for (&index, force) in candidates.iter().zip(&solution.force) {
-        for place in places_of(region, &region.records()[index]) {
-            gross[place] += force.abs();
-        }
-    }
-    let mut any = false;
-    let mut forces = solution.force.iter();
-    candidates.retain(|&index| {
-        let force = forces.next().copied().unwrap_or_default();
-        let record = region.records()[index];
-        let loads = places_of(region, &record).map(|place| gross[place]);
-        let is_released = Touch::of(&record).is_some_and(|touch| region.cause() == Cause::Released(touch));
-        let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
-        let least = share * loads.fold(f64::INFINITY, f64::min);
-        let lies_deep = !region.is_unsound() && lifted(assembly, pairs, &record).is_some();
-        let stays = record.parties.bilateral || force > least || lies_deep;
-        region.set_force(index, if stays { force } else { 0.0 });
-        any |= !stays && force > 0.0;
-        stays
-    });
-    any
-}
-
-/// Makes held rows of the remaining candidates.
-fn choose_rows(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    pairs: &Pairs,
-    region: &Region,
-    settling: &mut Settling,
-    time: Time,
-) {
-    for &index in &settling.candidates {
-        let record = &region.records()[index];
-        let lifted = if region.is_unsound() { None } else { lifted(assembly, pairs, record) };
-        settling.held.extend(held_row(assembly, connectors, record, lifted, time).map(|row| (index, row)));
-    }
-    settling.list_touches();
-}
-
-/// The row of a record, held at its present gap or at the one [m] to which it is `lifted`.
-fn held_row(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    record: &Collision,
-    lifted: Option<f64>,
-    time: Time,
-) -> Option<HeldRow> {
-    let source = source_of(record)?;
-    let bodies = record.bodies();
-    let hint = match source {
-        RowSource::Connector(id, index) => connectors.states()[id.index()].hint_of(index).copied(),
-        RowSource::Contact(_) => None,
-    };
-    // Bilateral rows are kept at gap 0, the others where they are, unless they have sunk too deep: moving a rope to
-    // its length would move a body that hangs on it by a long arm by much more.
-    let bilateral = record.parties.bilateral;
-    let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
-    let is_lifted = lifted.is_some() && is_seen(assembly, record);
-    let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted };
-    Some(with_lean(assembly, connectors, row, time))
-}
-
-/// The gap [m] to which a row that has sunk too deep is lifted; `None` for others. A contact without force sinks a
-/// little each time it is touched. It is lifted before the search takes it for the far side of a body; where zones
-/// can be seen, it is lifted into its zone, lest bodies overlap, unless it formed lower.
-#[inline]
-pub(crate) fn lifted(assembly: &Assembly, pairs: &Pairs, record: &Collision) -> Option<f64> {
-    let is_contact = record.connector().is_none();
-    let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest;
-    let (lowest, sunk) = (lower_end(record), SUNK * record.tolerances.sink());
-    if !lies_deep(lowest - sunk) {
-        return None;
-    }
-    let deepest = -DEEPEST * record.tolerances.target_gap;
-    if !is_seen(assembly, record) {
-        return (is_contact && lies_deep(deepest)).then_some(deepest);
-    }
-    let formed = if is_contact { formed_at(pairs, record).max(deepest) } else { lowest };
-    let lowest = lowest.min(formed);
-    lies_deep(lowest - sunk).then_some(lowest)
-}
-
-/// True if the target zone of a record is so wide relative to its bodies that their place in it can be seen.
-fn is_seen(assembly: &Assembly, record: &Collision) -> bool {
-    assembly.is_zone_seen(record.bodies())
-}
-
 fn settle_error(
     assembly: &Assembly,
     region: &Region,
@@ -426,13 +308,6 @@ fn settle_error(
     }
 }
 
-/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, must not exceed their
-/// ends by more than `accuracy`, however they sink.
-fn lower_end(record: &Collision) -> f64 {
-    let Tolerances { target_gap, accuracy, .. } = record.tolerances;
-    if record.connector().is_some() { -ROPE_SHARE * accuracy } else { target_gap - accuracy }
-}
-
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
 fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
     offset_under(region, record, stage.accelerations())
@@ -450,12 +325,6 @@ fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]])
 fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
     let linear = places_of(region, record).map(|place| spin(stage.accelerations()[place]).linear.length());
     linear.fold(0.0, f64::max)
-}
-
-/// Places of the movable bodies of a record.
-fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item = usize> + use<'a> {
-    let bodies = record.bodies();
-    bodies.into_iter().filter_map(|body| region.place(body))
 }
 
 pub(crate) fn spin([x, y, angular]: [f64; 3]) -> Spin {

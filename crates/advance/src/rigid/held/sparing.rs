@@ -1,7 +1,7 @@
 //! Candidates that are spared: as equations they would depend on others.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::group::dynamics::Stage;
+use crate::rigid::group::stage::Stage;
 use crate::rigid::held::jammed::is_jam;
 use crate::rigid::held::redundant::{NEARLY, Redundant, Rows};
 use crate::rigid::held::settling::Settling;

@@ -117,22 +117,19 @@ fn write_report(
     report: &mut ImpactReport,
     time: Time,
 ) {
-    report.time = time;
-    report.energy_change = 0.0;
-    report.rows.clear();
+    report.begin(time);
     for (index, record) in region.records().iter().enumerate() {
         let impulse = impact.impulses()[index];
         let (rate_before, rate_after) = (impact.rows()[index].rate, impact.rates()[index]);
         if impulse != 0.0 {
             // The rate afterwards is that of the bodies: by long arms the rounding of their velocities moves rows
             // by more than the rounding of the rows' own rates.
-            report.energy_change += 0.5 * impulse * (rate_before + rate_of(assembly, record, time));
-            report.rows.push(RowReport { collision: *record, rate_before, rate_after, impulse });
+            let energy = 0.5 * impulse * (rate_before + rate_of(assembly, record, time));
+            report.add(RowReport { collision: *record, rate_before, rate_after, impulse }, energy);
         }
     }
-    report.states.clear();
     let struck = region.bodies().iter().zip(region.struck()).filter(|&(_, &is_struck)| is_struck);
-    report.states.extend(struck.map(|(&body, _)| (body, assembly.flyer(body).state_at(time))));
+    report.add_states(struck.map(|(&body, _)| (body, assembly.flyer(body).state_at(time))));
 }
 
 pub(crate) fn impact_error(

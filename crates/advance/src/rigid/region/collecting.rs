@@ -1,4 +1,4 @@
-//! TODO
+//! Gathers the region of an event.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::is_rope;

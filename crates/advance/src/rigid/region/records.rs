@@ -1,4 +1,4 @@
-//! TODO
+//! Records of a region, measured anew.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;

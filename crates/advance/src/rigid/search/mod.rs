@@ -1,8 +1,12 @@
-//! Search for the next contacts: between which bodies, and when. `neighbourhood` holds the data of the bodies; `boxes`
-//! are the bodies' room in the broad phase, `pairs` the state of two bodies near each other (`marks`: a set of bodies),
-//! `predictions` ask the collision crate when they touch, `horizon` limits how far ahead. `rules` are the features of a
-//! pair that the search skips or lets come nearer: held contacts, corners that pass over each other (`flush`), contacts
-//! that only graze (`graze`).
+//! The search for the next contact of each pair, and for ropes that go taut.
+//!
+//! **Invariant**: on return every pair is clear until the time that it says, by the motions known now; what is not clear has
+//! an entry in the agenda. The search reads motions, contacts and connectors; it writes predictions, boxes and lanes, and
+//! nothing that moves a body. It knows no group and no force.
+//!
+//! `searching`: what it works on · `neighbourhood`: its data · `boxes`: a body's room to move · `lane`: a body's motion,
+//! packed · `predictions`: when a pair meets · `horizon`: how far ahead it looks · `ropes` · `flush`: corners that pass
+//! over each other · `graze`: features that turn back before they touch · `marks`: a set of bodies.
 
 pub(super) mod boxes;
 pub(super) mod flush;

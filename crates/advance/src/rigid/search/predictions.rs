@@ -33,7 +33,7 @@ impl Searching<'_> {
     /// Gives a body a new box around its present motion, and predicts when it leaves that.
     fn place_box(&mut self, body: BodyId) {
         let (lane, flyer) = (&self.search.lanes[body.index()], self.assembly.flyer(body));
-        let fat_box = self.search.rooms[body.index()].fat_box(lane, &flyer, self.assembly.now());
+        let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.assembly.now());
         self.search.broad.set(body, fat_box);
         self.predict_leaving(body);
     }
@@ -49,7 +49,7 @@ impl Searching<'_> {
         let (flyer, room) = (self.assembly.flyer(body), &self.search.rooms[body.index()]);
         let lane = &mut self.search.lanes[body.index()];
         let fat_box = self.search.broad.bounds(body);
-        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, &flyer, fat_box, self.assembly.now()));
+        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.assembly.now()));
         lane.stay = stay.unwrap_or(Time::NEVER);
         let source = Source::Box(body);
         match stay {

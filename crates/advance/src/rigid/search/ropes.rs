@@ -1,4 +1,4 @@
-//! TODO
+//! When ropes go taut.
 
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::path::Path;

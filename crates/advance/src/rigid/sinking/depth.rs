@@ -146,22 +146,10 @@ pub(crate) fn may_have_sunk_by(assembly: &Assembly, sinking: &Sinking, bodies: [
 
 impl Sinking {
     // getters of Sinking
-    /// Number of ticks that have gone by.
-    #[inline]
-    pub(crate) fn count(&self) -> f64 {
-        self.count
-    }
-
     /// Distance [m] by which bodies have been moved in being put back; zero except during a tick.
     #[inline]
     pub(crate) fn moved(&self) -> f64 {
         self.moved
-    }
-
-    /// Number of collisions of sunk contacts since the last tick.
-    #[inline]
-    pub(crate) fn pressed(&self) -> u32 {
-        self.pressed
     }
 
     /// Touches that have sunk, sorted.

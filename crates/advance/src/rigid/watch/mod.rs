@@ -1,7 +1,11 @@
-//! Events that end a step early. `watch` searches a step that was made for a contact that runs off its features or
-//! sinks, `releases` for a force that falls to zero, `switches` for stops that close and force laws that change branch.
-//! `crossing` finds where a sampled function falls below zero, `overdue` the events that should have come before,
-//! `staying` the contacts that surely do not end; `earliest` keeps the first event found.
+//! Events that end a step early: functions along a segment whose first fall below zero is an event.
+//!
+//! **Invariant**: on return the group's event is the first along its segment, or no force can vanish before its look. The
+//! room changes a group's segment only by asking for a shorter step; it handles no event.
+//!
+//! `extending`: a step with its event · `early_ends`: contacts that run off their features or sink · `releases`: forces that
+//! fall to zero · `switches`: stops that close, laws that change branch · `overdue`: events that should have come before ·
+//! `staying`: contacts that surely do not end · `crossing`: where a sampled function falls below zero · `earliest`.
 
 pub(super) mod crossing;
 pub(super) mod earliest;

@@ -53,8 +53,7 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
     dynamics.group.set_look(None);
     find_least_forces(dynamics);
     let mut earliest = Earliest { found: pull_at_start(dynamics).or(dynamics.group.event()) };
-    let mut samples = dynamics.stage.lend_samples();
-    let mut forces = std::mem::take(&mut samples.forces);
+    let mut forces = dynamics.stage.lend_force_samples();
     let mut pulled = dynamics.group.lend_pulled();
     let narrowest = NARROWEST * dynamics.group.span();
     let end = earliest.limit().unwrap_or(dynamics.group.span());
@@ -79,8 +78,7 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
     }
     dynamics.group.take_back_pulled(pulled);
     dynamics.group.set_event(earliest.found.map(|(offset, end)| (offset.max(from), end)));
-    samples.forces = forces;
-    dynamics.stage.take_back_samples(samples);
+    dynamics.stage.take_back_force_samples(forces);
 }
 
 /// True if the quartics through the samples show all that contact forces do on a part of the segment. No error

@@ -1,7 +1,11 @@
-//! Guards against sequences of events or steps that would never end: `bounces` too low to count, `hops` of contacts
-//! that open and close again without an impact, `repeats` of an event at one time, `storms` of impacts, the `pace`
-//! of steps too short to reach the end of the run, and `turns` too fast to follow. `memory` holds the past events that
-//! they decide by.
+//! Sequences of events or steps that would never end, and the memory by which they are recognised.
+//!
+//! **Invariant**: what is counted here never changes a motion by itself: an event is told that it is one too many, a caller
+//! that a run is hopeless.
+//!
+//! `memory`: past events of each body · `repeats`: events of a pair at one time · `storms`: more events than forces can
+//! resolve · `pace`, `steps`: steps too short to reach the end of the run · `turns`: bodies that turn too fast to be
+//! followed.
 
 pub(super) mod memory;
 pub(super) mod pace;

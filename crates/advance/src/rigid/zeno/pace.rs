@@ -12,7 +12,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::error::AdvanceError;
-use crate::rigid::group::dynamics::body_state;
+use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::steps::Pace;

@@ -6,7 +6,8 @@
 //! The kept share of a row is the fraction of its square J M^-1 J^T, without pins, that the pins and the rows before it
 //! leave: it vanishes in singular configurations (see `singular`).
 
-use crate::rigid::group::dynamics::{Dynamics, Stage};
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::Stage;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::{Hinge, JointTree};
 use glam::DVec2;

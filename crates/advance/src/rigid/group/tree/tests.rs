@@ -3,8 +3,9 @@
 use super::build::MOST_BESIDE;
 use crate::rigid::bodies::flyer::{FlightLaw, Flyer};
 use crate::rigid::contacts::rows::{HeldRow, Mechanism, RowSource};
-use crate::rigid::group::dynamics::{Dynamics, Stage, set_body_state};
+use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::physics::Physics;
+use crate::rigid::group::stage::{Stage, set_body_state};
 use crate::rigid::group::state::Group;
 use crate::rigid::test_scene::FINE;
 use crate::time::Time;

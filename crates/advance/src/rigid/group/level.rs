@@ -1,0 +1,74 @@
+//! Accelerations that are only rounding of contact forces.
+
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::stage::Stage;
+use halfgap_collision::BodyId;
+
+impl Dynamics<'_> {
+    /// Sets accelerations to zero that are only rounding of the contact forces, so that a standing body does not creep
+    /// because its sides are level only up to rounding.
+    pub(super) fn level(&mut self) {
+        let all: f64 = self.stage.forces.iter().map(|force| force.abs()).sum();
+        let mut bodies = self.stage.accelerations.iter().zip(&self.group.bodies);
+        if !bodies.any(|(acceleration, &body)| self.is_level(acceleration, body, LEVEL * all)) {
+            return;
+        }
+        let Stage { forces, gross, .. } = &mut *self.stage;
+        gross.clear();
+        gross.resize(self.group.bodies.len(), 0.0);
+        for (sides, force) in self.group.sides.iter().zip(forces.iter()) {
+            sides.iter().flatten().for_each(|&place| gross[place as usize] += force.abs());
+        }
+        let mut levels = std::mem::take(&mut self.stage.levels);
+        levels.clear();
+        let bodies = self.stage.accelerations.iter().zip(&self.group.bodies).zip(&self.stage.gross);
+        levels.extend(
+            bodies.map(|((acceleration, &body), gross)| self.is_level(acceleration, body, LEVEL * gross)),
+        );
+        self.stage.levels = levels;
+        self.keep_pushed();
+        let Stage { accelerations, levels, .. } = &mut *self.stage;
+        for (acceleration, _) in accelerations.iter_mut().zip(levels).filter(|(_, is_level)| **is_level) {
+            *acceleration = [0.0; 3];
+        }
+    }
+
+    /// True if an acceleration is no larger than a force [N] at the centre, or at the body's reach, would make it.
+    #[inline]
+    fn is_level(&self, &[x, y, angular]: &[f64; 3], body: BodyId, force: f64) -> bool {
+        let flyer = &self.physics.mechanism.flyers[body.index()];
+        let (inertia, reach) = (flyer.body(), flyer.reach());
+        let linear = force * inertia.inverse_mass;
+        x * x + y * y <= linear * linear && angular.abs() <= force * inertia.inverse_moment * reach
+    }
+
+    /// Removes from the level bodies those that a row ties to a body which is not level and for which their
+    /// acceleration counts: what is rounding for a light body under large forces need not be so for a heavy one under
+    /// small ones.
+    fn keep_pushed(&mut self) {
+        let flyers = self.physics.mechanism.flyers;
+        let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
+        let mut any = levels.contains(&true) && levels.contains(&false);
+        while std::mem::take(&mut any) {
+            for (sides, jacobian) in self.group.sides.iter().zip(jacobians.iter()) {
+                let &[Some(a), Some(b)] = sides else { continue };
+                let (a, b) = (a as usize, b as usize);
+                let (side, level, other) = if levels[a] { (0, a, b) } else { (1, b, a) };
+                if levels[a] == levels[b] {
+                    continue;
+                }
+                let row = &jacobian[3 * side..3 * side + 3];
+                let pushed: f64 = row.iter().zip(&accelerations[level]).map(|(j, a)| j * a).sum();
+                let inertia = flyers[self.group.bodies[other].index()].body();
+                if pushed.abs() > LEVEL * gross[other] * inertia.inverse_mass {
+                    levels[level] = false;
+                    any = true;
+                }
+            }
+        }
+    }
+}
+
+/// Fraction of the sum of the rows' forces on a body below which their resultant is rounding; a slope [rad] below it is
+/// level.
+pub(crate) const LEVEL: f64 = 1e-12;

@@ -1,0 +1,164 @@
+//! What others may read of a group.
+
+use crate::ode::SegmentPolynomial;
+use crate::rigid::connectors::store::Stop;
+use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::group::state::{Group, SegmentEnd, Work};
+use crate::rigid::group::stiffness::Stiffness;
+use crate::time::Time;
+use halfgap_collision::BodyId;
+
+impl Group {
+    // getters of Group
+    /// Its bodies, ascending.
+    #[inline]
+    pub(crate) fn bodies(&self) -> &[BodyId] {
+        &self.bodies
+    }
+
+    /// Force [N] of each row at the end of the segment.
+    #[inline]
+    pub(crate) fn end_forces(&self) -> &[f64] {
+        &self.end_forces
+    }
+
+    /// State at the end of the segment.
+    #[inline]
+    pub(crate) fn end_state(&self) -> &[f64] {
+        &self.end_state
+    }
+
+    /// The event that ends the segment early, if there is one, and its offset [s].
+    #[inline]
+    pub(crate) fn event(&self) -> Option<(f64, SegmentEnd)> {
+        self.event
+    }
+
+    /// Force [N] of each row at the start of the segment.
+    #[inline]
+    pub(crate) fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
+    #[inline]
+    pub(crate) fn idle(&self) -> &[HeldRow] {
+        &self.idle
+    }
+
+    /// Another group was ended at the time at which this one was made, because a contact pulled from the start; here it
+    /// may pull again.
+    #[inline]
+    pub(crate) fn is_patient(&self) -> bool {
+        self.is_patient
+    }
+
+    /// No event can end its segments early: dense output may be postponed until it is asked for.
+    #[inline]
+    pub(crate) fn is_unwatched(&self) -> bool {
+        self.is_unwatched
+    }
+
+    /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.
+    #[inline]
+    pub(crate) fn largest_error(&self) -> f64 {
+        self.largest_error
+    }
+
+    /// Force laws that act on its bodies, ascending.
+    #[inline]
+    pub(crate) fn laws(&self) -> &[usize] {
+        &self.laws
+    }
+
+    /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
+    #[inline]
+    pub(crate) fn least_gap(&self) -> Option<f64> {
+        self.least_gap
+    }
+
+    /// Offset [s] up to which the stages of the step show that no contact loses its force, while the search for events
+    /// has not gone further.
+    #[inline]
+    pub(crate) fn look(&self) -> Option<f64> {
+        self.look
+    }
+
+    /// Time at which the group was made.
+    #[inline]
+    pub(crate) fn made(&self) -> Time {
+        self.made
+    }
+
+    /// Length of the next step to try [s]; `None` if nothing is known.
+    #[inline]
+    pub(crate) fn next_step(&self) -> Option<f64> {
+        self.next_step
+    }
+
+    /// x, y and angle of each body along the segment.
+    #[inline]
+    pub(crate) fn paths(&self) -> &[[SegmentPolynomial; 3]] {
+        &self.paths
+    }
+
+    /// Energy [J] that the projection of the end has added.
+    #[inline]
+    pub(crate) fn projected(&self) -> f64 {
+        self.projected
+    }
+
+    /// Rates of `state` at the start of the segment.
+    #[inline]
+    pub(crate) fn rates(&self) -> &[f64] {
+        &self.rates
+    }
+
+    /// The held rows: independent ones of the contacts, and every row of the connectors.
+    #[inline]
+    pub(crate) fn rows(&self) -> &[HeldRow] {
+        &self.rows
+    }
+
+    /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
+    #[inline]
+    pub(crate) fn sides(&self) -> &[[Option<u32>; 2]] {
+        &self.sides
+    }
+
+    /// Length of the segment [s].
+    #[inline]
+    pub(crate) fn span(&self) -> f64 {
+        self.span
+    }
+
+    /// Time at which its segment starts.
+    #[inline]
+    pub(crate) fn start(&self) -> Time {
+        self.start
+    }
+
+    /// Position (x, y, angle) of each body, then velocities likewise, then works.
+    #[inline]
+    pub(crate) fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// The stiffness.
+    #[inline]
+    pub(crate) fn stiffness(&self) -> Stiffness {
+        self.stiffness
+    }
+
+    /// The stops.
+    #[inline]
+    pub(crate) fn stops(&self) -> &[Stop] {
+        &self.stops
+    }
+
+    /// The works.
+    #[inline]
+    pub(crate) fn works(&self) -> &[Work] {
+        &self.works
+    }
+}
