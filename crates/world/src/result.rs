@@ -7,6 +7,7 @@ use crate::recording::Recording;
 use crate::run::RunReport;
 use crate::run_error::{Outcome, RunError};
 use crate::world::{Statistics, World};
+use halfgap_advance::rigid::RemedyCounts;
 use halfgap_collision::{BodyId, BodyState};
 use serde::ser::{SerializeMap, SerializeStruct};
 use serde::{Serialize, Serializer};
@@ -190,7 +191,8 @@ impl From<&BodyState> for StateJson {
 impl Serialize for StatisticsResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let world = &self.world;
-        let fields = 8 + usize::from(self.wall_seconds_median.is_some());
+        let any_acted = world.remedies.acted().next().is_some();
+        let fields = 8 + usize::from(self.wall_seconds_median.is_some()) + usize::from(any_acted);
         let mut statistics = serializer.serialize_struct("StatisticsResult", fields)?;
         statistics.serialize_field("steps", &world.steps)?;
         statistics.serialize_field("evaluations", &world.evaluations)?;
@@ -199,12 +201,26 @@ impl Serialize for StatisticsResult {
         statistics.serialize_field("contact_solves", &world.contact_solves)?;
         statistics.serialize_field("smallest_gap", &world.smallest_gap)?;
         statistics.serialize_field("largest_connector_error", &world.largest_connector_error)?;
+        if any_acted {
+            statistics.serialize_field("remedies", &RemediesJson(&world.remedies))?;
+        } else {
+            statistics.skip_field("remedies")?;
+        }
         statistics.serialize_field("wall_seconds", &self.wall_seconds)?;
         match self.wall_seconds_median {
             Some(median) => statistics.serialize_field("wall_seconds_median", &median)?,
             None => statistics.skip_field("wall_seconds_median")?,
         }
         statistics.end()
+    }
+}
+
+/// Serializes the remedies that have acted as a map, in their order.
+struct RemediesJson<'a>(&'a RemedyCounts);
+
+impl Serialize for RemediesJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.acted().map(|(remedy, count)| (remedy.name(), count)))
     }
 }
 

@@ -24,6 +24,7 @@ pub(crate) fn rigid_settings(
         steps: StepControl { largest_step: settings.fixed_step().or(settings.time_step), ..derived.steps },
         projection: settings.stabilization == Stabilization::Projection,
         extra: extra(settings),
+        without: settings.without,
         impulse_step: settings.fixed_step().filter(|_| !settings.contacts),
         joint_small_impacts: settings.joint_small_impacts,
         ..derived

@@ -1,5 +1,6 @@
 //! Settings of a world: accuracy, thresholds of touching, impact law, integrator.
 
+use halfgap_advance::rigid::RemedySet;
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
 /// Default of [`WorldSettings::tolerance`] [-].
@@ -56,6 +57,8 @@ pub struct WorldSettings {
     /// Largest error of a connector that is accepted at the start [m]; 1e-6 of the smallest movable body's radius if
     /// `None`.
     pub start_connector_error: Option<f64>,
+    /// Remedies of the advance that are switched off: for tests of what each is for.
+    pub without: RemedySet,
 }
 
 /// Integrator of motion under forces, where it has no closed form.
@@ -152,6 +155,7 @@ impl Default for WorldSettings {
             stabilization: Stabilization::default(),
             joint_small_impacts: false,
             start_connector_error: None,
+            without: RemedySet::NONE,
         }
     }
 }

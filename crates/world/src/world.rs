@@ -7,7 +7,7 @@ use crate::run_error::RunError;
 use crate::sentry::Sentry;
 use glam::DVec2;
 use halfgap_advance::rigid::{
-    AdvanceError, Handled, ImpactReport, Ledger as Booked, RigidSettings, RigidSystem, RowForce,
+    AdvanceError, Handled, ImpactReport, Ledger as Booked, RemedyCounts, RigidSettings, RigidSystem, RowForce,
 };
 use halfgap_advance::{Time, advance_watched};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
@@ -61,6 +61,8 @@ pub struct Statistics {
     /// Largest size of the error of a connector [m] seen within a step or at the present time; `None` without
     /// connectors.
     pub largest_connector_error: Option<f64>,
+    /// How often each remedy for a rare case has acted.
+    pub remedies: RemedyCounts,
 }
 
 /// Data of a body that the layers below do not hold.
@@ -370,6 +372,7 @@ impl World {
             contact_solves: counts.contact_solves,
             smallest_gap: counts.smallest_gap,
             largest_connector_error: errors.reduce(f64::max),
+            remedies: self.system.remedies(),
         }
     }
 

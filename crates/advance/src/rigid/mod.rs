@@ -21,7 +21,7 @@
 //! | `event` | what is done, in which order? |
 //!
 //! `system` is what callers see of all this. `parts` lists the parts of a system, `settings` how it is run, `scales` turns a
-//! tolerance into thresholds for a scene, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error`
+//! tolerance into thresholds for a scene, `remedies` what is done in rare cases, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error`
 //! the reasons why an advance stops.
 
 mod agenda;
@@ -37,6 +37,7 @@ mod held;
 mod impact;
 mod parts;
 mod region;
+mod remedies;
 mod scales;
 mod search;
 mod settings;
@@ -59,6 +60,7 @@ pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
 pub use parts::{BodyPart, PartsError, RigidParts};
+pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
 pub use settings::{ExtraAcceleration, RigidSettings, StepControl};
 pub use system::RigidSystem;

@@ -1,6 +1,7 @@
 //! Derives the thresholds of touching and the errors of steps from one relative tolerance and the sizes in a scene.
 
 use crate::ode::Method;
+use crate::rigid::remedies::RemedySet;
 use crate::rigid::settings::{RigidSettings, StepControl};
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
@@ -144,6 +145,7 @@ impl RigidSettings {
             projection: true,
             extra: None,
             impulse_step: None,
+            without: RemedySet::default(),
             joint_small_impacts: false,
             rest_speed,
             resolution_time: resolution_time(&tolerances, scales),

@@ -1,6 +1,7 @@
 //! Settings of a system: how contacts are judged, impacts resolved, and motions integrated.
 
 use crate::ode::Method;
+use crate::rigid::remedies::RemedySet;
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 
@@ -37,6 +38,8 @@ pub struct RigidSettings {
     /// Time [s] in which forces produce `velocity_tol`, or move a body through half of the target zone, whichever is
     /// longer. Bodies with more events than allowed within it are stopped without elasticity (a storm).
     pub resolution_time: f64,
+    /// Remedies that are switched off, for tests of what they are for.
+    pub without: RemedySet,
 }
 
 /// Control of the steps of groups: their acceptable errors and their bound.

@@ -18,6 +18,7 @@ use crate::rigid::event::intervention::{VelocityChange, change_velocities, check
 use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::parts::RigidParts;
 use crate::rigid::region::cause::Cause;
+use crate::rigid::remedies::RemedyCounts;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::room_to_sink;
 use crate::system::EventDriven;
@@ -78,6 +79,12 @@ impl RigidSystem {
         let (stage, counts) = (self.rooms.groups.stage(), self.rooms.books.counts());
         let contact_solves = counts.contact_solves + stage.solves();
         Counts { evaluations: stage.evaluations(), contact_solves, ..counts }
+    }
+
+    /// How often each remedy has acted since the start.
+    #[must_use]
+    pub fn remedies(&self) -> RemedyCounts {
+        self.rooms.assembly.remedies().counts()
     }
 
     /// The settings of the system.

@@ -5,6 +5,7 @@ use crate::rigid::bodies::flyer::FlightLaw;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::state::Group;
 use crate::rigid::parts::{BodyPart, RigidParts};
+use crate::rigid::remedies::RemedySet;
 use crate::rigid::settings::{RigidSettings, StepControl};
 use crate::rigid::system::RigidSystem;
 use crate::time::Time;
@@ -54,6 +55,7 @@ pub(crate) const FINE: RigidSettings = RigidSettings {
     joint_small_impacts: false,
     extra: None,
     impulse_step: None,
+    without: RemedySet::NONE,
 };
 
 /// Settings for discs at rest.

@@ -24,6 +24,7 @@ pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     projection: true,
     extra: None,
     impulse_step: None,
+    without: halfgap_advance::rigid::RemedySet::NONE,
     joint_small_impacts: false,
     rest_speed: 1e-12,
     resolution_time: 1e-10,

@@ -2,6 +2,7 @@
 
 use crate::scene::RunData;
 use crate::settings::{ToleranceOverrides, WorldSettings};
+use halfgap_advance::rigid::RemedySet;
 use halfgap_contact::ImpactOrder;
 
 /// Returns the settings that a scene asks for.
@@ -26,5 +27,6 @@ pub(crate) fn of_run(run: &RunData) -> WorldSettings {
         stabilization: run.stabilization.unwrap_or_default(),
         joint_small_impacts: run.joint_small_impacts,
         start_connector_error: run.start_connector_error,
+        without: RemedySet::NONE,
     }
 }

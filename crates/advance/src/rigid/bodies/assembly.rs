@@ -3,6 +3,7 @@
 
 use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::laws::Laws;
+use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
 use glam::DVec2;
@@ -25,6 +26,7 @@ pub(crate) struct Shared {
 pub(crate) struct Assembly {
     pub(super) settings: RigidSettings,
     pub(super) flyers: Vec<Flyer>,
+    pub(super) remedies: Remedies,
     /// True for bodies that cannot move.
     pub(super) is_fixed: Vec<bool>,
     pub(super) laws: Laws,
@@ -55,6 +57,7 @@ impl Assembly {
         let count = flyers.len();
         let mut assembly = Self {
             settings,
+            remedies: Remedies::new(settings.without),
             is_fixed: flyers.iter().map(|flyer| flyer.body().is_fixed()).collect(),
             masses_are_extreme: false,
             is_forceless: laws.all.is_empty()
@@ -75,6 +78,12 @@ impl Assembly {
     /// Number of bodies.
     pub(crate) fn body_count(&self) -> usize {
         self.flyers.len()
+    }
+
+    /// The remedies.
+    #[inline]
+    pub(crate) fn remedies(&self) -> &Remedies {
+        &self.remedies
     }
 
     /// The ids of all bodies.

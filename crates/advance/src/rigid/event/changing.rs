@@ -17,6 +17,7 @@ use crate::rigid::impact::impacts::Manner;
 use crate::rigid::region::collecting::{collect_region, passes_by};
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 use halfgap_collision::{Body, BodyState, Collision};
 
 /// Angle [rad] within which joints are smooth: twice that by which their features reach beyond them, and some rounding.
@@ -41,12 +42,15 @@ pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
     }
     hand_over(rooms, work);
     let region = &mut work.region;
-    if work.repeats > 0 {
+    if work.repeats > 0 && rooms.assembly.remedies().act(Remedy::LeavingNeighbours) {
         // Two corners that pass each other may hand over to each other without end.
         retain_staying(&rooms.assembly, &rooms.connectors, region);
     }
     // Beside a seam a corner may be as near to the next corner, and pass over it.
-    region.retain_records(|record| !(closes_fast(record) && passes_by(&rooms.search, record)));
+    let remedies = rooms.assembly.remedies();
+    region.retain_records(|record| {
+        !(closes_fast(record) && passes_by(&rooms.search, record) && remedies.act(Remedy::PassingBy))
+    });
     let rest = rooms.assembly.rest_speed();
     if work.region.records().iter().any(|record| record.motion.normal_velocity < -rest) {
         return collide(rooms, work);
@@ -75,7 +79,9 @@ fn hand_over(rooms: &mut Rooms, work: &mut EventWork) {
     if work.region.records().iter().any(|record| closes_fast(record) && !is_neighbour(record)) {
         return;
     }
-    if work.region.mark(is_neighbour) {
+    let any = work.region.records().iter().any(is_neighbour);
+    if any && rooms.assembly.remedies().act(Remedy::HandOver) {
+        work.region.mark(is_neighbour);
         stop_bilaterally(rooms, work);
     }
 }

@@ -13,6 +13,7 @@ use crate::rigid::impact::corners::{Corner, corners, take_side, take_slower};
 use crate::rigid::impact::impacts::Manner;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 use glam::DVec2;
 use halfgap_collision::{Collision, ConnectorId};
 
@@ -28,6 +29,9 @@ pub(crate) fn leave_loose_corner(rooms: &mut Rooms, work: &mut EventWork) -> Res
             && !is_left_alone(&rooms.assembly, &rooms.connectors, &work.region, *corner)
     };
     let Some(corner) = corners(&work.region).find(is_loose) else { return Ok(false) };
+    if !rooms.assembly.remedies().act(Remedy::LooseCorner) {
+        return Ok(false);
+    }
     if let Some(side) = sides(corner.id).iter().position(|is_held| *is_held) {
         take_side(&rooms.assembly, &mut rooms.connectors, &mut work.region, corner, side);
     } else {

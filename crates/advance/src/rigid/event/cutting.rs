@@ -22,6 +22,7 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::region::records::gap_of_cause;
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::region::view::View;
+use crate::rigid::remedies::Remedy;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::BodyId;
@@ -56,7 +57,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
     measure_touches(&rooms.assembly, region);
     let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause(), seen).map(|(gap, _)| gap);
     let time = cut_exactly(rooms, region, gap);
-    if is_off(&rooms.view(), region, gap, time) {
+    if is_off(&rooms.view(), region, gap, time) && rooms.assembly.remedies().act(Remedy::CutByDense) {
         for &leader in region.groups() {
             cut_group(
                 &mut rooms.assembly,
@@ -144,7 +145,7 @@ pub(crate) fn passed(
         let has_sunk = || gap_at(assembly, Touch { bodies, features }, time).0 < least;
         (predicted < time && has_sunk()).then_some(predicted)
     });
-    contacts.min()
+    contacts.min().filter(|_| assembly.remedies().act(Remedy::Passed))
 }
 
 /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],

@@ -18,6 +18,7 @@ use crate::rigid::event::telling::note_begins;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::{Region, measure_touches};
+use crate::rigid::remedies::Remedy;
 use crate::rigid::zeno::pace::take_haste;
 use crate::rigid::zeno::repeats::has_pulled;
 use halfgap_geometry::GapSample;
@@ -32,6 +33,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
     let is_hasty =
         take_haste(&mut rooms.zeno, work.region.bodies()) || has_pulled(&rooms.zeno, rooms.assembly.now());
+    let is_hasty = is_hasty && rooms.assembly.remedies().act(Remedy::Haste);
     work.region.set_hasty(is_hasty);
     settle_and_still(rooms, work)?;
     while leave_loose_corner(rooms, work)? {
@@ -46,7 +48,8 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     note_begins(&rooms.assembly, &mut rooms.books, &work.region, &work.settling);
     outcome?;
     set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, work);
-    if rooms.zeno.last_insistent().is_some_and(|last| is_same_time(last, rooms.assembly.now())) {
+    let insists = rooms.zeno.last_insistent().is_some_and(|last| is_same_time(last, rooms.assembly.now()));
+    if insists && rooms.assembly.remedies().act(Remedy::Insistence) {
         lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
     }
     for &body in work.region.bodies() {

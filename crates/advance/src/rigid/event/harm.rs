@@ -12,6 +12,7 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settle::HASTY_SHARE;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::measure_touches;
+use crate::rigid::remedies::Remedy;
 
 /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
 /// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
@@ -33,10 +34,12 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
             Err(AdvanceError::StepCollapsed { .. }) => [true, false],
             Err(_) => [false; 2],
         };
+        let remedies = rooms.assembly.remedies();
+        let displaces = displaces && !work.region.is_unsound() && remedies.act(Remedy::Displaced);
+        let drives = drives && !work.region.is_hasty() && remedies.act(Remedy::Driven);
         // Each remedy is tried once.
         let region = &mut work.region;
-        let has_remedy = (displaces && !region.is_unsound()) || (drives && !region.is_hasty());
-        if !has_remedy {
+        if !(displaces || drives) {
             return outcome;
         }
         if displaces {

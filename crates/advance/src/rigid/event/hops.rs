@@ -11,6 +11,7 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::held::hops::{force_of, opens, time_of_hops};
 use crate::rigid::impact::impacts::{conclude_impact, set_rows};
 use crate::rigid::region::records::remeasure;
+use crate::rigid::remedies::Remedy;
 
 /// Gives the bodies of held contacts that open in low hops the velocities that they will have after the landing,
 /// and lets contacts leave that open all the same. False if nothing is changed.
@@ -31,6 +32,7 @@ pub(crate) fn still_hops(
         return false;
     }
     let Some(wait) = time_of_hops(assembly, &work.region, &work.settling) else { return false };
+    assembly.remedies().act(Remedy::LowHops);
     let EventWork { region, impact, settling, carried, stop, .. } = &mut *work;
     carried.clear();
     carried.resize(region.records().len(), 0.0);

@@ -13,6 +13,7 @@ use crate::rigid::impact::impacts::Manner;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::records::remeasure;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::zeno::pace::forget_paces;
 use crate::rigid::zeno::storms::note_events;
 
@@ -39,8 +40,9 @@ pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Adv
         let of = (work.region.bodies(), work.region.records());
         note_events(&rooms.assembly, &mut rooms.zeno, &mut rooms.books, of)
     };
-    work.region.set_in_storm(in_storm);
-    let is_storm = work.region.in_storm() || work.repeats > 0;
+    work.region.set_in_storm(in_storm && rooms.assembly.remedies().act(Remedy::Storms));
+    let repeats = work.repeats > 0 && rooms.assembly.remedies().act(Remedy::Repeats);
+    let is_storm = work.region.in_storm() || repeats;
     let mut report = rooms.books.take_report();
     let now = rooms.assembly.now();
     let is_lawful = !is_storm && work.region.cause() != Cause::Tick;

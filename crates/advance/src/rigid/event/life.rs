@@ -15,6 +15,7 @@ use crate::rigid::group::groups::{Groups, part, put_group, with_group};
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::watch::extending::extend_watched;
 use crate::rigid::watch::releases::look_for_release;
@@ -94,7 +95,8 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
     let now = rooms.assembly.now();
     let mut inertias = rooms.groups.take_inertias();
     inertias.extend(group.bodies().iter().map(|&body| rooms.assembly.inertia(body)));
-    group.prepare(now, has_pulled(&rooms.zeno, now), &inertias);
+    let is_patient = has_pulled(&rooms.zeno, now) && rooms.assembly.remedies().act(Remedy::Patience);
+    group.prepare(now, is_patient, &inertias);
     rooms.groups.put_inertias(inertias);
     for place in 0..group.bodies().len() {
         let body = group.bodies()[place];

@@ -9,6 +9,7 @@ use crate::rigid::event::groups::is_watched;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::search::graze::grazing_gap;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::sinking::depth::sinks_to;
@@ -31,7 +32,7 @@ fn returns_to(assembly: &Assembly, touch: Touch) -> f64 {
     // In a hollow that is barely larger, a contact never opens as far as others have to.
     let target = pair_tolerances(a, b, &assembly.settings().tolerances).target_gap;
     let (gap, _) = gap_at(assembly, touch, assembly.now());
-    if gap < -DEEPEST * target { gap } else { target }
+    if gap < -DEEPEST * target && assembly.remedies().act(Remedy::DeepReturn) { gap } else { target }
 }
 
 /// Sets the rules for the touching features of a region: the search skips those that are held or that a group
@@ -57,14 +58,17 @@ pub(crate) fn set_rules(
         } else {
             // A contact that fires although it does not close would do so again at once: it may sink, but no
             // farther than its zone.
-            let stays = rate <= rest || (gap > least && fires_open(pairs, pair, touch.features));
+            let stays = rate <= rest
+                || (gap > least
+                    && fires_open(pairs, pair, touch.features)
+                    && assembly.remedies().act(Remedy::OpenFiring));
             touch.lowered_to(if stays {
                 sinks_to(assembly, *touch, gap)
             } else {
                 returns_to(assembly, *touch)
             })
         };
-        if is_held {
+        if is_held && assembly.remedies().act(Remedy::EndsLeftAlone) {
             leave_ends_alone(assembly, pairs, pair, touch);
         }
         if !is_idle(assembly, search, touch, &rule) {
@@ -98,7 +102,7 @@ fn give_back_deep(assembly: &Assembly, pairs: &mut Pairs, search: &Neighbourhood
         let touch = Touch { bodies: pairs.bodies(pair), features };
         let (gap, rate) = gap_at(assembly, touch, assembly.now());
         // A contact that lies deeper by far has gone round its body.
-        if gap < deepest && gap > MUCH_DEEPER * told {
+        if gap < deepest && gap > MUCH_DEEPER * told && assembly.remedies().act(Remedy::DeepRulesKept) {
             let target = if rate.abs() <= assembly.rest_speed() { assembly.refire_gap(gap) } else { gap };
             // A rule that this event has made for the same features comes first, and counts.
             pairs.change_rules(pair, |rules| rules.push(touch.lowered_to(target)));
@@ -188,7 +192,10 @@ fn set_halos(assembly: &Assembly, search: &mut Neighbourhood, region: &Region) {
         }
         for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
             let halo = search.lanes()[body.index()].halo();
-            search.set_halo(body, halo.min((gap - seam).max(least)));
+            let lower = (gap - seam).max(least);
+            if lower < halo && assembly.remedies().act(Remedy::Halos) {
+                search.set_halo(body, lower);
+            }
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::held::hops::any_held_hops;
 use crate::rigid::held::settle::settle;
 use crate::rigid::region::cause::Cause;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::zeno::repeats::has_pulled;
 
 /// Largest number of rounds in which the low hops of one event are stilled.
@@ -18,10 +19,11 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
     let EventWork { region, settling, .. } = &mut *work;
     settling.set_likely(region.records().iter().map(|record| is_likely(&rooms.pairs, record)));
     settling.expect_forces(region, &rooms.books.told().changes().end);
-    let may_hop = work.region.cause() != Cause::Start && !work.region.is_hasty();
+    let is_on = rooms.assembly.remedies().is_on(Remedy::LowHops);
+    let may_hop = is_on && work.region.cause() != Cause::Start && !work.region.is_hasty();
     settle_region(rooms, work, may_hop)?;
     for round in 1..=HOP_ROUNDS {
-        if !any_held_hops(&rooms.assembly, &work.region, &work.settling) {
+        if !is_on || !any_held_hops(&rooms.assembly, &work.region, &work.settling) {
             break;
         }
         let is_stilled =

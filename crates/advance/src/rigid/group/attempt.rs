@@ -7,6 +7,7 @@ use crate::rigid::group::segment::LONGEST_STEP;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::settings::StepControl;
 
 /// A step size has collapsed below this multiple of machine epsilon times the clock, or times the time in which a body
@@ -79,7 +80,8 @@ impl Dynamics<'_> {
             if attempt.step.is_nan() || attempt.step <= shortest {
                 // The clock may round the time at which one step ends to below that at which the next begins, with a
                 // law's change of branch between: then the rates noted there are those of another branch.
-                if !std::mem::take(&mut may_ask_again) || !self.renew_rates() {
+                let asks = std::mem::take(&mut may_ask_again) && self.renew_rates();
+                if !asks || !self.physics.remedies.act(Remedy::RenewedRates) {
                     return Err(StepFailure::Collapsed(attempt.step));
                 }
                 attempt.step = proposed;

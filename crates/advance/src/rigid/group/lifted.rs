@@ -2,6 +2,7 @@
 
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::Group;
+use crate::rigid::remedies::Remedy;
 
 impl Dynamics<'_> {
     /// Lowers the least gaps of contacts that are touched without force to where the end of the segment has them: the
@@ -16,7 +17,10 @@ impl Dynamics<'_> {
         let mechanism = &self.physics.mechanism;
         for row in idle {
             let gap = mechanism.gap(row, &self.stage.movings);
-            row.set_gap(row.gap.min(gap - mechanism.tolerances.sink()));
+            let lower = gap - mechanism.tolerances.sink();
+            if lower < row.gap && self.physics.remedies.act(Remedy::IdleLowered) {
+                row.set_gap(lower);
+            }
         }
     }
 
@@ -31,7 +35,9 @@ impl Dynamics<'_> {
         let mechanism = &self.physics.mechanism;
         for row in rows.iter_mut().filter(|row| !row.bilateral) {
             let gap = mechanism.gap(row, &self.stage.movings);
-            if (gap - row.gap).abs() > mechanism.tolerances.sink() {
+            if (gap - row.gap).abs() > mechanism.tolerances.sink()
+                && self.physics.remedies.act(Remedy::LiftedLeft)
+            {
                 row.set_gap(gap);
             }
         }

@@ -5,6 +5,7 @@ use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::{ForceLaw, Snapshot};
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::Mechanism;
+use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::{ExtraAcceleration, RigidSettings, StepControl};
 use halfgap_collision::{Connector, Moving};
 use std::sync::Arc;
@@ -16,6 +17,7 @@ pub(crate) struct Physics<'a> {
     pub(crate) laws: &'a [Arc<dyn ForceLaw>],
     pub(crate) extra: Option<ExtraAcceleration>,
     pub(crate) steps: &'a StepControl,
+    pub(crate) remedies: &'a Remedies,
     /// States may be moved onto the held rows.
     pub(crate) projects: bool,
 }
@@ -26,10 +28,11 @@ impl<'a> Physics<'a> {
         flyers: &'a [Flyer],
         connectors: &'a [Connector],
         laws: &'a [Arc<dyn ForceLaw>],
-        settings: &'a RigidSettings,
+        (settings, remedies): (&'a RigidSettings, &'a Remedies),
     ) -> Self {
         let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
-        Self { mechanism, laws, extra: settings.extra, steps: &settings.steps, projects: settings.projection }
+        let RigidSettings { extra, ref steps, projection: projects, .. } = *settings;
+        Self { mechanism, laws, extra, steps, remedies, projects }
     }
 
     /// What the laws see of bodies that move like this at a time [s].
@@ -40,5 +43,10 @@ impl<'a> Physics<'a> {
 
 /// The parts of the system from which the motion of groups is computed.
 pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Physics<'a> {
-    Physics::of(assembly.flyers(), connectors.all(), &assembly.laws().all, assembly.settings())
+    Physics::of(
+        assembly.flyers(),
+        connectors.all(),
+        &assembly.laws().all,
+        (assembly.settings(), assembly.remedies()),
+    )
 }

@@ -6,6 +6,7 @@
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::measures::ROUNDING_SHARE;
 use crate::rigid::group::state::Group;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::settings::StepControl;
 
 /// Largest number of Newton steps of one projection.
@@ -41,7 +42,8 @@ impl Dynamics<'_> {
         let dependent = self.factorize(|_, _| ());
         let Group { rows, held, .. } = &mut *self.group;
         let mut connectors = (0..rows.len()).filter(|&row| rows[row].bilateral);
-        if dependent > 0 && connectors.any(|row| held.is_dependent(row)) {
+        let has_dependent = dependent > 0 && connectors.any(|row| held.is_dependent(row));
+        if has_dependent && self.physics.remedies.act(Remedy::SoftRows) {
             held.soften(|row| rows[row].bilateral);
             self.group.dependent = dependent;
         }

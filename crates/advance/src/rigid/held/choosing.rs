@@ -10,6 +10,7 @@ use crate::rigid::group::stage::Stage;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 use crate::time::Time;
 use halfgap_collision::{Collision, Tolerances};
 
@@ -61,6 +62,9 @@ pub(crate) fn choose_rows(
     for &index in &settling.candidates {
         let record = &region.records()[index];
         let lifted = if region.is_unsound() { None } else { lifted(assembly, pairs, record) };
+        if lifted.is_some() {
+            assembly.remedies().act(Remedy::Lifting);
+        }
         settling.held.extend(held_row(assembly, connectors, record, lifted, time).map(|row| (index, row)));
     }
     settling.list_touches();
@@ -97,7 +101,7 @@ pub(crate) fn lifted(assembly: &Assembly, pairs: &Pairs, record: &Collision) -> 
     let is_contact = record.connector().is_none();
     let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest;
     let (lowest, sunk) = (lower_end(record), SUNK * record.tolerances.sink());
-    if !lies_deep(lowest - sunk) {
+    if !lies_deep(lowest - sunk) || !assembly.remedies().is_on(Remedy::Lifting) {
         return None;
     }
     let deepest = -DEEPEST * record.tolerances.target_gap;

@@ -26,6 +26,7 @@ use crate::rigid::impact::jams::{SMALL_CONTRADICTION, is_close};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
+use crate::rigid::remedies::Remedy;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Spin};
@@ -93,9 +94,11 @@ pub(crate) fn settle(
         solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
     }
     if region.is_unsound() || (!is_start && (settling.is_shared() || settling.has_pulled)) {
-        spare_nearly_redundant(view.assembly, region, settling);
+        if view.assembly.remedies().is_on(Remedy::NearlySparing) {
+            spare_nearly_redundant(view.assembly, region, settling);
+        }
     }
-    if is_start || settling.has_pulled {
+    if (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::Sparing) {
         // The last problem may still have had candidates that were then dropped without a force.
         pose_problem(view.assembly, region, settling, stage);
         spare_redundant(view.assembly, region, settling, stage);
@@ -124,25 +127,36 @@ fn solve_candidates(
     if is_sound && !is_jammed(assembly, region, settling, stage) {
         return Ok(Solved::Soundly);
     }
-    if let_pass(assembly, connectors, region, settling) {
+    if assembly.remedies().is_on(Remedy::LetPass) && let_pass(assembly, connectors, region, settling) {
+        assembly.remedies().act(Remedy::LetPass);
         pose_problem(assembly, region, settling, stage);
         is_sound = settling.solve_strictly().is_ok();
         if is_sound && !is_jammed(assembly, region, settling, stage) {
             return Ok(Solved::Soundly);
         }
     }
-    drop_distant(assembly, region, settling, stage);
+    let remedies = assembly.remedies();
+    settling.dropped.clear();
+    if remedies.act(Remedy::JammedForces) {
+        drop_distant(assembly, region, settling, stage);
+    }
     let mut found = settling.solve_strictly();
     while is_sound && found.is_ok() && take_back_pressed(assembly, region, settling, stage) {
         pose_problem(assembly, region, settling, stage);
         found = settling.solve_strictly();
     }
-    if found.is_err() && drop_leaving(assembly, connectors, region, settling, stage) {
+    let may_leave = found.is_err() && remedies.is_on(Remedy::Leaving);
+    if may_leave && drop_leaving(assembly, connectors, region, settling, stage) {
+        remedies.act(Remedy::Leaving);
         pose_problem(assembly, region, settling, stage);
         found = settling.solve_strictly();
     }
     let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
-    if let Err(source) = found.or_else(|_| settling.solve_leniently()) {
+    let found = found.or_else(|error| match remedies.act(Remedy::LenientForces) {
+        true => settling.solve_leniently(),
+        false => Err(error),
+    });
+    if let Err(source) = found {
         // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.
         let velocity = |body: BodyId| assembly.moving_at(body, time).velocity;
@@ -151,7 +165,8 @@ fn solve_candidates(
         let frame = region.bodies().first().filter(|_| drifts).map_or(DVec2::ZERO, |&body| velocity(body));
         let speeds = region.bodies().iter().map(|&body| (velocity(body) - frame).length());
         let fastest = speeds.fold(rest, f64::max);
-        if scale > 2.0 * rest * fastest / assembly.settings().steps.length {
+        let is_rounding = scale <= 2.0 * rest * fastest / assembly.settings().steps.length;
+        if !(is_rounding && remedies.act(Remedy::RestingContradiction)) {
             return Err(settle_error(assembly, region, settling, time, source));
         }
         settling.solution.force.clear();
@@ -179,7 +194,7 @@ fn add_hops(assembly: &Assembly, region: &Region, settling: &mut Settling, stage
         }
     }
     settling.candidates.sort_unstable();
-    settling.candidates.len() > before
+    settling.candidates.len() > before && assembly.remedies().act(Remedy::LowHops)
 }
 
 /// True if a record of a region, given with its index, may hop, and has not been released or left out.

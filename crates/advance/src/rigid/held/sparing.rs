@@ -7,6 +7,7 @@ use crate::rigid::held::redundant::{NEARLY, Redundant, Rows};
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 
 /// Spares candidates until none depends on the others, such that the remaining contacts do not pull if none pulled
 /// in the solution found. In a jam, whose rows contradict each other, none is spared; nor at the start, unless a
@@ -28,6 +29,7 @@ pub(crate) fn spare_redundant(
     if is_start && (rows.factorize(held) == 0 || !rows.pulls(held, problem.offset(), as_held)) {
         return;
     }
+    assembly.remedies().act(Remedy::Sparing);
     rows.spare(held, region, candidates);
 }
 
@@ -39,6 +41,7 @@ pub(crate) fn spare_nearly_redundant(assembly: &Assembly, region: &mut Region, s
     list_candidates(assembly, region, candidates, rows);
     let dependent = rows.factorize(held);
     if held.kept_beyond(dependent) <= NEARLY {
+        assembly.remedies().act(Remedy::NearlySparing);
         rows.spare(nearly, region, candidates);
     }
 }

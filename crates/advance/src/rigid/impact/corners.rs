@@ -13,6 +13,7 @@ use crate::rigid::connectors::corners::go_along;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::row_of;
 use crate::rigid::region::touching::Region;
+use crate::rigid::remedies::Remedy;
 use halfgap_collision::{Collision, ConnectorId, Detector};
 
 /// A corner of a rail that holds the rail's point, in a region.
@@ -38,6 +39,9 @@ pub(crate) fn hold_back(
         before.min(after) > rest && before.max(after) > fast
     };
     let Some(corner) = corners(region).find(is_driven_out) else { return false };
+    if !assembly.remedies().act(Remedy::HeldInCorner) {
+        return false;
+    }
     let opening = opening(corner);
     take_slower(assembly, connectors, region, corner, opening);
     true

@@ -13,6 +13,7 @@ use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::region::records::rate_of;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
+use crate::rigid::remedies::Remedy;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Detector};
@@ -62,7 +63,9 @@ pub(crate) fn set_rows(
     region: &Region,
     impact: &mut Impact,
 ) {
-    let dull = assembly.settings().impulse_step.is_none() && bounces_low(assembly, pairs, region.records());
+    let dull = assembly.settings().impulse_step.is_none()
+        && bounces_low(assembly, pairs, region.records())
+        && assembly.remedies().act(Remedy::LowBounces);
     let rows = region.records().iter().map(|record| {
         let row = row_of(assembly, record);
         let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };

@@ -9,6 +9,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::impact::impacts::{Manner, find_impulses};
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
+use crate::rigid::remedies::Remedy;
 use halfgap_collision::Collision;
 use halfgap_contact::{Impact, ImpactError};
 
@@ -20,6 +21,9 @@ pub(crate) const JAM: f64 = 100.0;
 /// jam; true if there are any.
 pub(crate) fn leave_out_jammed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> bool {
     if region.records().iter().all(|record| is_close(assembly, record)) || !jams(assembly, region, impact) {
+        return false;
+    }
+    if !assembly.remedies().act(Remedy::JammedImpulses) {
         return false;
     }
     region.leave_out(|record| !is_close(assembly, record));

@@ -8,6 +8,7 @@ use crate::rigid::group::groups::{Groups, group_of};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::search::flush::is_passed_over;
 use crate::rigid::search::graze::{is_grazing, rope_grazes};
 use crate::rigid::search::lane::LaneKind;
@@ -175,7 +176,8 @@ fn counts_as_touching(
         return false;
     }
     // Corners that pass each other before they come to their target do not meet.
-    let passes = rate < -rest && passes_by(view.search, record);
+    let passes =
+        rate < -rest && passes_by(view.search, record) && view.assembly.remedies().act(Remedy::PassingBy);
     record.distance_to_target() <= view.assembly.sink()
         || (record.zone() >= Zone::Target && rate < -rest && !passes)
         || (at_start && !passes)

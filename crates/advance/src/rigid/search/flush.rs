@@ -9,6 +9,7 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::touch::Touch;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::search::searching::Searching;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
@@ -59,6 +60,9 @@ impl Searching<'_> {
         }
         let bodies = self.pairs.bodies(pair);
         let Some(passing) = passing_features(self.assembly, bodies, features) else { return false };
+        if !self.assembly.remedies().act(Remedy::CornersPassOver) {
+            return false;
+        }
         self.pairs.change_rules(pair, |rules| {
             for features in passing.into_iter().flatten() {
                 // Of several rules for the same features the first counts.
@@ -76,6 +80,7 @@ pub(crate) fn is_passed_over(assembly: &Assembly, record: &Collision) -> bool {
     record.motion.normal_velocity < -assembly.rest_speed()
         && Touch::of(record)
             .is_some_and(|touch| passing_features(assembly, touch.bodies, touch.features).is_some())
+        && assembly.remedies().act(Remedy::CornersPassOver)
 }
 
 /// Pairs of features of two corners that pass over each other, where the given features are one of them; `None` if

@@ -11,6 +11,7 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::touch::{DEEPEST, Touch};
+use crate::rigid::remedies::Remedy;
 use crate::rigid::search::searching::Searching;
 use crate::time::Time;
 use glam::DVec2;
@@ -32,6 +33,9 @@ impl Searching<'_> {
         if self.pairs.rules(pair).iter().any(has_come) || !turns_back(self.assembly, self.connectors, touch) {
             return false;
         }
+        if !self.assembly.remedies().act(Remedy::Grazing) {
+            return false;
+        }
         let rule = touch.lowered_to(least_grazing_gap(self.assembly, touch.bodies));
         self.pairs.change_rules(pair, |rules| {
             // Of several rules for the same features the first counts.
@@ -47,6 +51,7 @@ impl Searching<'_> {
 pub(crate) fn is_grazing(assembly: &Assembly, connectors: &Connectors, record: &Collision) -> bool {
     record.motion.normal_velocity < -assembly.rest_speed()
         && Touch::of(record).is_some_and(|touch| turns_back(assembly, connectors, touch))
+        && assembly.remedies().act(Remedy::Grazing)
 }
 
 /// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
@@ -100,11 +105,12 @@ fn least_grazing_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
 pub(crate) fn rope_grazes(assembly: &Assembly, connectors: &Connectors, id: ConnectorId) -> bool {
     let connector = connectors.connector(id);
     let bodies = connector.bodies();
-    parts_again(assembly, connectors, bodies, -grazing_slack(assembly), |time| {
+    let grazes = parts_again(assembly, connectors, bodies, -grazing_slack(assembly), |time| {
         let [a, b] = bodies.map(|body| assembly.moving_at(body, time));
         let sample = connector.measure(0, &a, &b);
         (sample.gap, sample.kinematics.rate)
-    })
+    });
+    grazes && assembly.remedies().act(Remedy::Grazing)
 }
 
 /// Excess length [m] that a grazing rope is given.

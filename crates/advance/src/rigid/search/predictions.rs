@@ -305,6 +305,7 @@ fn look_ahead(
 
 #[cfg(test)]
 mod tests {
+    use crate::rigid::held::settle::spin;
 
     use super::*;
     use crate::rigid::bodies::flyer::FlightLaw;

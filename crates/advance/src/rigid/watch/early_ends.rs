@@ -9,6 +9,7 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::inner::MIDDLE;
 use crate::rigid::group::samples::{EARLY, NODES, Samples};
 use crate::rigid::group::state::SegmentEnd;
+use crate::rigid::remedies::Remedy;
 use crate::rigid::watch::crossing::{
     Part, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
 };
@@ -158,7 +159,7 @@ fn lower_sunk(dynamics: &mut Dynamics<'_>, samples: &mut Samples) {
             continue;
         }
         dynamics.put_idle_at(row, 0.0);
-        if is_within(dynamics, row) {
+        if is_within(dynamics, row) && dynamics.physics.remedies.act(Remedy::SunkLowered) {
             let way = dynamics.physics.mechanism.tolerances.sink() - heights[0];
             dynamics.group.lower_idle_gap(row, way);
             heights.iter_mut().chain(early).for_each(|height| *height += way);

@@ -7,6 +7,7 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::stage::{Stage, set_body_state};
 use crate::rigid::group::state::Group;
+use crate::rigid::remedies::{Remedies, RemedySet};
 use crate::rigid::test_scene::FINE;
 use crate::time::Time;
 use glam::DVec2;
@@ -149,7 +150,9 @@ impl Scene {
             set_body_state(&mut group.state, count, place, &flyer.state_at(Time::ZERO));
         }
         let mechanism = Mechanism { flyers, connectors, tolerances: &TOLERANCES };
-        let physics = Physics { mechanism, laws: &[], extra: None, steps: &FINE.steps, projects: true };
+        let remedies = &Remedies::new(RemedySet::NONE);
+        let physics =
+            Physics { mechanism, laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };
         let mut stage = Stage::new(vec![Moving::BACKGROUND; count]);
         act(&mut Dynamics { physics, group, stage: &mut stage, start: Time::ZERO })
     }

@@ -1,0 +1,260 @@
+//! Remedies: what is done in rare cases that no principle covers. Each has a name, a counter in the statistics, a switch for
+//! tests, and a scene among the tests that fails without it; docs/remedies.md lists them.
+//!
+//! The counters are atomic so that a system can be read from several threads; they change no motion.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A remedy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Corners that pass over each other where two surfaces are flush are left out of the search and of events.
+    CornersPassOver,
+    /// Features and ropes that turn back by themselves before they touch, near a dead point of a mechanism, are let come nearer.
+    Grazing,
+    /// The search leaves out the corners at the ends of the edges of a held contact.
+    EndsLeftAlone,
+    /// Contacts that lie deep keep the gaps at which they fire through events of other bodies.
+    DeepRulesKept,
+    /// A contact that opens from where the search does not look fires where it lies.
+    DeepReturn,
+    /// Contacts that fire again and again at one time fire at a lower gap, by more each time.
+    Insistence,
+    /// A body that slides along below its target gap fires later elsewhere, so that it does not run against seams.
+    Halos,
+    /// A contact that has fired although it did not close may sink as one at rest.
+    OpenFiring,
+    /// Corners that pass each other before they come to their target do not take part in an event.
+    PassingBy,
+    /// Contacts that have stayed within their zone since they were last seen meet without elasticity.
+    LowBounces,
+    /// Contacts that open so slowly that forces close them again within the zone are held at once.
+    LowHops,
+    /// A pair that fires very often at one time is stopped without elasticity.
+    Repeats,
+    /// Bodies with more events than forces can resolve are stopped without elasticity.
+    Storms,
+    /// In groups whose steps are very short, or that were ended at once, contacts that open ever so slowly are let go.
+    Haste,
+    /// A group made anew at the time at which another was ended because a contact pulled may pull again at its start.
+    Patience,
+    /// Contacts farther apart than the gap at which bodies fire are left out of impacts whose impulses cancel each other.
+    JammedImpulses,
+    /// A point that an impact drives off both sides of its corner is kept on one of them.
+    HeldInCorner,
+    /// A point that two forces do not hold in its corner leaves that along one of its sides.
+    LooseCorner,
+    /// Contacts beyond their target gap are left out where forces exceed all loads by far.
+    JammedForces,
+    /// Contacts that act by next to no lever on a body held by connectors are let pass.
+    LetPass,
+    /// Contacts that run off their features at once are left out where no forces are found with them.
+    Leaving,
+    /// Contacts that run off at once are left out where two corners hand over to each other without end.
+    LeavingNeighbours,
+    /// Contacts that contradict each other by little get forces by least squares.
+    LenientForces,
+    /// Contradictions that the rounding of bodies at rest explains are taken for no forces.
+    RestingContradiction,
+    /// Candidates that depend on others are spared where the rows found would pull as equations.
+    Sparing,
+    /// Candidates that nearly depend on others are spared, since as equations they have immense forces.
+    NearlySparing,
+    /// Contacts that have sunk too deep are lifted as they are held.
+    Lifting,
+    /// Contacts that lifting has not brought to their gaps are held where they are.
+    LiftedLeft,
+    /// Contacts without force that a projection has moved fire at a lower gap.
+    IdleLowered,
+    /// Contacts without force that start a segment below their gap by rounding fire at a lower one.
+    SunkLowered,
+    /// The neighbour of a contact that runs off its features along a smooth joint is stopped, not struck.
+    HandOver,
+    /// Groups whose projection brings contacts nearer by more than their zone are made anew with fewer rows.
+    Displaced,
+    /// Groups whose rows drive other contacts together are made anew without those that open slowly.
+    Driven,
+    /// An event that was corrected beyond another contact goes back to that.
+    Passed,
+    /// Groups are cut by dense output where a repeated step has touching features elsewhere.
+    CutByDense,
+    /// Rows of connectors that depend on others are softened, so that they share their force.
+    SoftRows,
+    /// Rates at the start of a step that falls to nothing are found anew, as a law may have changed branch in between.
+    RenewedRates,
+}
+
+impl Remedy {
+    /// All remedies, in the order of their declaration.
+    pub const ALL: [Self; 37] = [
+        Self::CornersPassOver,
+        Self::Grazing,
+        Self::EndsLeftAlone,
+        Self::DeepRulesKept,
+        Self::DeepReturn,
+        Self::Insistence,
+        Self::Halos,
+        Self::OpenFiring,
+        Self::PassingBy,
+        Self::LowBounces,
+        Self::LowHops,
+        Self::Repeats,
+        Self::Storms,
+        Self::Haste,
+        Self::Patience,
+        Self::JammedImpulses,
+        Self::HeldInCorner,
+        Self::LooseCorner,
+        Self::JammedForces,
+        Self::LetPass,
+        Self::Leaving,
+        Self::LeavingNeighbours,
+        Self::LenientForces,
+        Self::RestingContradiction,
+        Self::Sparing,
+        Self::NearlySparing,
+        Self::Lifting,
+        Self::LiftedLeft,
+        Self::IdleLowered,
+        Self::SunkLowered,
+        Self::HandOver,
+        Self::Displaced,
+        Self::Driven,
+        Self::Passed,
+        Self::CutByDense,
+        Self::SoftRows,
+        Self::RenewedRates,
+    ];
+
+    /// Its name in statistics.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CornersPassOver => "corners_pass_over",
+            Self::Grazing => "grazing",
+            Self::EndsLeftAlone => "ends_left_alone",
+            Self::DeepRulesKept => "deep_rules_kept",
+            Self::DeepReturn => "deep_return",
+            Self::Insistence => "insistence",
+            Self::Halos => "halos",
+            Self::OpenFiring => "open_firing",
+            Self::PassingBy => "passing_by",
+            Self::LowBounces => "low_bounces",
+            Self::LowHops => "low_hops",
+            Self::Repeats => "repeats",
+            Self::Storms => "storms",
+            Self::Haste => "haste",
+            Self::Patience => "patience",
+            Self::JammedImpulses => "jammed_impulses",
+            Self::HeldInCorner => "held_in_corner",
+            Self::LooseCorner => "loose_corner",
+            Self::JammedForces => "jammed_forces",
+            Self::LetPass => "let_pass",
+            Self::Leaving => "leaving",
+            Self::LeavingNeighbours => "leaving_neighbours",
+            Self::LenientForces => "lenient_forces",
+            Self::RestingContradiction => "resting_contradiction",
+            Self::Sparing => "sparing",
+            Self::NearlySparing => "nearly_sparing",
+            Self::Lifting => "lifting",
+            Self::LiftedLeft => "lifted_left",
+            Self::IdleLowered => "idle_lowered",
+            Self::SunkLowered => "sunk_lowered",
+            Self::HandOver => "hand_over",
+            Self::Displaced => "displaced",
+            Self::Driven => "driven",
+            Self::Passed => "passed",
+            Self::CutByDense => "cut_by_dense",
+            Self::SoftRows => "soft_rows",
+            Self::RenewedRates => "renewed_rates",
+        }
+    }
+}
+
+/// Number of remedies.
+const COUNT: usize = Remedy::ALL.len();
+
+/// A set of remedies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RemedySet(u64);
+
+impl RemedySet {
+    /// No remedy.
+    pub const NONE: Self = Self(0);
+
+    /// The set with one more remedy.
+    #[must_use]
+    pub fn with(self, remedy: Remedy) -> Self {
+        Self(self.0 | 1 << remedy as u32)
+    }
+
+    /// True if a remedy is in the set.
+    #[must_use]
+    #[inline]
+    pub fn contains(self, remedy: Remedy) -> bool {
+        self.0 & 1 << remedy as u32 != 0
+    }
+}
+
+/// How often each remedy has acted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RemedyCounts([u64; COUNT]);
+
+impl Default for RemedyCounts {
+    fn default() -> Self {
+        Self([0; COUNT])
+    }
+}
+
+impl RemedyCounts {
+    /// How often a remedy has acted.
+    #[must_use]
+    pub fn of(&self, remedy: Remedy) -> u64 {
+        self.0[remedy as usize]
+    }
+
+    /// The remedies that have acted, with their counts.
+    pub fn acted(&self) -> impl Iterator<Item = (Remedy, u64)> {
+        Remedy::ALL.into_iter().zip(self.0).filter(|&(_, count)| count > 0)
+    }
+}
+
+/// The remedies of a system: which are off, and how often each has acted.
+#[derive(Debug)]
+pub(crate) struct Remedies {
+    without: RemedySet,
+    acted: [AtomicU64; COUNT],
+}
+
+impl Clone for Remedies {
+    fn clone(&self) -> Self {
+        Self { without: self.without, acted: self.counts().0.map(AtomicU64::new) }
+    }
+}
+
+impl Remedies {
+    pub(crate) fn new(without: RemedySet) -> Self {
+        Self { without, acted: [0; COUNT].map(AtomicU64::new) }
+    }
+
+    /// Counts that a remedy is to act; false if it is off.
+    #[inline]
+    pub(crate) fn act(&self, remedy: Remedy) -> bool {
+        let is_on = self.is_on(remedy);
+        if is_on {
+            self.acted[remedy as usize].fetch_add(1, Ordering::Relaxed);
+        }
+        is_on
+    }
+
+    /// True unless a remedy is switched off.
+    #[inline]
+    pub(crate) fn is_on(&self, remedy: Remedy) -> bool {
+        !self.without.contains(remedy)
+    }
+
+    pub(crate) fn counts(&self) -> RemedyCounts {
+        RemedyCounts(std::array::from_fn(|index| self.acted[index].load(Ordering::Relaxed)))
+    }
+}
