@@ -432,7 +432,7 @@ fn forces(world: &World) -> f64 {
     let movings: Vec<Moving> = world.bodies().map(|body| Moving::from(&world.state(body))).collect();
     let now = Snapshot::new(world.time(), &movings);
     let mut sums = vec![Wrench::default(); movings.len()];
-    world.forces().iter().for_each(|law| law.apply(&now, &mut Wrenches::new(&mut sums)));
+    world.forces().for_each(|law| law.apply(&now, &mut Wrenches::new(&mut sums)));
     sums.iter().map(|wrench| wrench.force.length()).sum()
 }
 

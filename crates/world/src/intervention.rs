@@ -1,11 +1,13 @@
 //! Changes of velocity from outside while a world runs: velocities and impulses that the caller gives to bodies.
 
+use crate::advance::tell;
 use crate::builder::LARGEST;
 use crate::event::Event;
 use crate::run_error::RunError;
-use crate::world::{World, tell};
+use crate::world::World;
 use glam::DVec2;
-use halfgap_advance::rigid::VelocityChange;
+use halfgap_advance::Time;
+use halfgap_advance::rigid::{AdvanceError, Handled, RigidSystem, VelocityChange};
 use halfgap_collision::{BodyId, BodyState};
 use std::ops::ControlFlow;
 
@@ -66,8 +68,8 @@ impl World {
     /// a velocity that connectors do not allow does not come about. Give velocities that belong together, such as those
     /// of a linkage, in one call.
     ///
-    /// Steps are computed ahead. A force law whose parameters you changed (say a mouse spring) takes effect at the next
-    /// intervention on one of its bodies; setting the present velocity is enough.
+    /// Steps are computed ahead. A force law whose parameters you changed takes effect at the next intervention on one of
+    /// its bodies; setting the present velocity is enough. [`add_force`](Self::add_force) adds one while the world lives.
     ///
     /// Thresholds and steps follow the scales of the world as it was built. If interventions will make bodies much
     /// faster, say so in [`WorldSettings::usual_speed`](crate::WorldSettings::usual_speed).
@@ -100,6 +102,15 @@ impl World {
         interventions.iter().try_for_each(|intervention| self.check_intervention(intervention))?;
         let changes = self.changes_by(interventions);
         changes.iter().try_for_each(|change| self.check_change(change))?;
+        self.interrupt(on_event, |system, now| system.intervene(now, &changes))
+    }
+
+    /// Lets an event of the caller's happen at the present time, and reports it.
+    pub(crate) fn interrupt(
+        &mut self,
+        on_event: &mut dyn FnMut(&Event),
+        act: impl FnOnce(&mut RigidSystem, Time) -> Result<Option<Handled>, AdvanceError>,
+    ) -> Result<(), RunError> {
         self.ask_guard()?;
         let has_failed = self.system.failure().is_some();
         let mut go_on = |event: &Event| {
@@ -107,7 +118,7 @@ impl World {
             ControlFlow::Continue(())
         };
         let _ = self.tell_first_impact(&mut go_on);
-        let outcome = self.system.intervene(self.now, &changes);
+        let outcome = act(&mut self.system, self.now);
         let outcome = outcome.map(|handled| match handled {
             Some(handled) => tell(&mut self.told, &self.system, handled, &mut go_on),
             None => ControlFlow::Continue(()),

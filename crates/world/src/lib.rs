@@ -31,6 +31,7 @@
 
 #![forbid(unsafe_code)]
 
+mod advance;
 #[cfg(feature = "scene")]
 mod build;
 mod builder;
@@ -42,6 +43,7 @@ mod estimate;
 mod event;
 mod finding;
 pub mod force;
+mod force_change;
 mod intervention;
 mod ledger;
 #[cfg(feature = "scene")]
@@ -50,6 +52,7 @@ mod near;
 mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
+mod query;
 #[cfg(feature = "scene")]
 mod recording;
 #[cfg(feature = "scene")]
@@ -87,6 +90,7 @@ pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
 pub use names::{short_names, short_text};
+pub use query::WorldHit;
 #[cfg(feature = "scene")]
 pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};
 #[cfg(feature = "scene")]

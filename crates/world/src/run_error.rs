@@ -2,6 +2,7 @@
 
 use crate::builder::LARGEST;
 use crate::finding::Finding;
+use crate::world_error::WorldError;
 use halfgap_advance::rigid::{AdvanceError, Between, LARGEST_MASS_RATIO};
 use halfgap_collision::BodyId;
 use halfgap_contact::{ImpactError, Problem, SolveError};
@@ -258,6 +259,15 @@ pub enum RunError {
         /// Name of the body.
         body: String,
     },
+    /// A force law cannot be added; nothing was done.
+    #[error(transparent)]
+    BadForce {
+        /// What is wrong with it.
+        source: Box<WorldError>,
+    },
+    /// A force is to be removed that the world never had.
+    #[error("this world never had that force law")]
+    NoSuchForce,
     /// A plan cannot be followed; nothing was run.
     #[error("the plan's {field} must be {rule}, got {value} s")]
     BadPlan {
@@ -308,6 +318,8 @@ impl RunError {
             | Self::NoSuchBody { .. }
             | Self::Immovable { .. }
             | Self::BadIntervention { .. }
+            | Self::BadForce { .. }
+            | Self::NoSuchForce
             | Self::BadPlan { .. }
             | Self::Advance(_) => None,
         }

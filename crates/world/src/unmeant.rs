@@ -16,7 +16,7 @@ impl World {
     /// Lists the force laws whose point, fixed in the world, is now outside of the body on which they push, but those
     /// of which that is known.
     pub(crate) fn find_points_left(&self, is_known: impl Fn(&str) -> bool, findings: &mut Vec<Finding>) {
-        for law in self.forces().iter().filter(|law| !is_known(law.name())) {
+        for law in self.forces().filter(|law| !is_known(law.name())) {
             let Some((body, point)) = law.fixed_point().filter(|(body, _)| !self.is_fixed(*body)) else {
                 continue;
             };
@@ -54,6 +54,6 @@ impl World {
             let wrenches = wrenches_of(from_ref(law), &now, movings.len());
             movable().any(|body| wrenches[body.index()] != Wrench::default())
         };
-        movable().any(|body| self.has_gravity(body)) || self.forces().iter().any(acts)
+        movable().any(|body| self.has_gravity(body)) || self.forces().any(acts)
     }
 }

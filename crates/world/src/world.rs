@@ -1,18 +1,14 @@
 //! A world: named bodies, the laws that act on them, and the clock.
 
-use crate::event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
+use crate::event::{ContactForce, Event, Impact};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::ledger::{Books, LawWork, Ledger, Turnover};
-use crate::run_error::RunError;
 use crate::sentry::Sentry;
 use glam::DVec2;
-use halfgap_advance::rigid::{
-    AdvanceError, Handled, ImpactReport, Ledger as Booked, RemedyCounts, RigidSettings, RigidSystem, RowForce,
-};
-use halfgap_advance::{Time, advance_watched};
+use halfgap_advance::Time;
+use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RigidSystem, RowForce};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Name of the background in messages and recordings.
@@ -91,7 +87,6 @@ pub struct Inertia {
 pub struct World {
     pub(crate) system: RigidSystem,
     bodies: Vec<Named>,
-    forces: Vec<Arc<dyn ForceLaw>>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) now: Time,
     warnings: Vec<String>,
@@ -99,7 +94,7 @@ pub struct World {
     /// The last impact reported, always an `Event::Impact`: its buffers are reused.
     pub(crate) told: Event,
     /// Whether bodies that closed at the start were stopped by an impact that has not been reported yet.
-    owes_first_impact: bool,
+    pub(crate) owes_first_impact: bool,
     pub(crate) sentry: Sentry,
 }
 
@@ -118,7 +113,6 @@ pub(crate) struct Start {
 pub(crate) struct WorldParts {
     pub(crate) system: RigidSystem,
     pub(crate) bodies: Vec<Named>,
-    pub(crate) forces: Vec<Arc<dyn ForceLaw>>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) now: Time,
     pub(crate) warnings: Vec<String>,
@@ -128,21 +122,11 @@ pub(crate) struct WorldParts {
 
 impl World {
     pub(crate) fn new(parts: WorldParts) -> Self {
-        let WorldParts { system, bodies, forces, connectors, now, warnings, start, sentry } = parts;
+        let WorldParts { system, bodies, connectors, now, warnings, start, sentry } = parts;
         let told = Event::Impact(Impact::default());
         let owes_first_impact = system.counts().impacts > 0;
-        let mut world = Self {
-            system,
-            bodies,
-            forces,
-            connectors,
-            now,
-            warnings,
-            start,
-            told,
-            owes_first_impact,
-            sentry,
-        };
+        let mut world =
+            Self { system, bodies, connectors, now, warnings, start, told, owes_first_impact, sentry };
         world.sentry.turnover = Turnover::new(world.energy());
         world
     }
@@ -232,7 +216,7 @@ impl World {
 
     /// Returns [`World::energy`], with a buffer for the motion of the bodies.
     fn energy_in(&self, room: &mut Vec<Moving>) -> Energy {
-        energy_of(&self.bodies, &self.forces, self.time(), |body| self.state(body), room)
+        energy_of(&self.bodies, self.forces(), self.time(), |body| self.state(body), room)
     }
 
     /// Returns the sums of the ledger, with buffers for what they are made from.
@@ -264,7 +248,7 @@ impl World {
     #[must_use]
     pub fn ledger(&self) -> Ledger {
         let books = self.system.ledger_at(self.now);
-        let laws = self.forces.iter().zip(&books.laws).enumerate();
+        let laws = self.system.laws().iter().zip(&books.laws).enumerate();
         let laws = laws.filter(|(index, _)| !self.system.has_potential(*index));
         Ledger {
             now: self.energy(),
@@ -291,10 +275,10 @@ impl World {
         self.bodies[body.index()].gravity != DVec2::ZERO
     }
 
-    /// The force laws, in the order in which they were added.
-    #[must_use]
-    pub fn forces(&self) -> &[Arc<dyn ForceLaw>] {
-        &self.forces
+    /// The force laws that act, in the order in which they were added.
+    pub fn forces(&self) -> impl Iterator<Item = &Arc<dyn ForceLaw>> {
+        let laws = self.system.laws().iter().enumerate();
+        laws.filter(|&(index, _)| self.system.is_acting(index)).map(|(_, law)| law)
     }
 
     /// The connectors, in the order in which they were added.
@@ -386,136 +370,9 @@ impl World {
     pub(crate) fn steps(&self) -> u64 {
         self.system.counts().segments
     }
-
-    /// Advances to a time [s] and reports each event in order; does nothing if the time is in the past.
-    ///
-    /// A stop does not change the motion: an advance in one call and in many give the same bits. An impact within
-    /// time-location error before `time` may be reported by the next call instead, with its own time; one exactly at
-    /// `time` may be reported by either call.
-    ///
-    /// # Errors
-    /// [`RunError::NotATime`] for a time that is not finite. [`RunError::Astray`] if connectors have come apart, bodies
-    /// overlap or the energy books do not close at that time. Another error if an event or a step cannot be simulated:
-    /// the world stays at that time. Both kinds are repeated on every further attempt, except [`RunError::Crawls`]
-    /// and [`RunError::TooFast`]: after these an advance over a shorter duration may go on, unless a longer one is
-    /// planned ([`WorldSettings::duration`](crate::WorldSettings::duration)).
-    pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
-        let outcome = self.advance_while(time, &mut |event| {
-            on_event(event);
-            ControlFlow::Continue(())
-        });
-        outcome.map(|_| ())
-    }
-
-    /// Advances like [`advance_to`](Self::advance_to), but stops after the first event for which `on_event` returns
-    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. One event may have several reports (an
-    /// impact, then contacts that end and begin): those that remain are still delivered. A later call continues as if
-    /// there had been no stop, and reports further events of the same time.
-    ///
-    /// # Errors
-    /// Those of [`advance_to`](Self::advance_to).
-    pub fn advance_while(
-        &mut self,
-        time: f64,
-        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<()>, RunError> {
-        self.advance_watched(time, on_event, &mut |_| ControlFlow::Continue(()))
-    }
-
-    /// Advances like [`advance_while`](Self::advance_while); `on_quiet` is called with the present time [s] after each
-    /// step that is no event for callers, and may stop the advance there.
-    pub(crate) fn advance_watched(
-        &mut self,
-        time: f64,
-        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
-        on_quiet: &mut dyn FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<()>, RunError> {
-        if !time.is_finite() {
-            return Err(RunError::NotATime);
-        }
-        if time >= self.time() {
-            self.ask_guard()?;
-        }
-        let has_failed = self.system.failure().is_some();
-        let until = Time::from_seconds(time);
-        self.system.set_duration(self.sentry.duration.max(time - self.time()));
-        if self.tell_first_impact(on_event).is_break() {
-            return self.conclude(Ok(ControlFlow::Break(())), self.system.now());
-        }
-        let (system, told) = (&mut self.system, &mut self.told);
-        let outcome = advance_watched(system, until, |system, handled| match handled {
-            Some(handled) => tell(told, system, *handled, on_event),
-            None => on_quiet(system.now().seconds()),
-        });
-        let reached =
-            if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.system.now() };
-        if !has_failed {
-            self.tell_last_words(on_event);
-        }
-        self.conclude(outcome, reached)
-    }
-
-    /// Reports the impact at the start, if there was one that has not been reported.
-    pub(crate) fn tell_first_impact(
-        &mut self,
-        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        if !std::mem::take(&mut self.owes_first_impact) {
-            return ControlFlow::Continue(());
-        }
-        write_impact(&mut self.told, self.system.last_impact());
-        on_event(&self.told)
-    }
-
-    /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system
-    /// that had failed before: its last impact has been reported then.
-    pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
-        if let Some(impact) = self.system.untold_impact() {
-            write_impact(&mut self.told, impact);
-            // The world cannot go on, whatever the caller answers.
-            let _ = on_event(&self.told);
-        }
-    }
-
-    /// Notes how far the system has come, and lets the sentry check it.
-    pub(crate) fn conclude(
-        &mut self,
-        outcome: Result<ControlFlow<()>, AdvanceError>,
-        reached: Time,
-    ) -> Result<ControlFlow<()>, RunError> {
-        self.now = self.now.max(reached);
-        let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));
-        self.stand_guard(outcome)
-    }
 }
 
-/// Reports an event that was handled, its impact in a reused buffer. Returns `Break` if a callback did.
-pub(crate) fn tell(
-    told: &mut Event,
-    system: &RigidSystem,
-    handled: Handled,
-    on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
-) -> ControlFlow<()> {
-    let mut stops = false;
-    if handled.impact {
-        write_impact(told, system.last_impact());
-        stops |= on_event(told).is_break();
-    }
-    let changes = system.contact_changes();
-    let told_of = |row: &RowForce| ContactEvent {
-        time: changes.time.seconds(),
-        contact: contact_force(row),
-        bouncing: row.bouncing,
-    };
-    let ends = changes.end.iter().map(|row| Event::ContactEnds(told_of(row)));
-    let begins = changes.begin.iter().map(|row| Event::ContactBegins(told_of(row)));
-    for event in ends.chain(begins) {
-        stops |= on_event(&event).is_break();
-    }
-    if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-}
-
-fn contact_force(row: &RowForce) -> ContactForce {
+pub(crate) fn contact_force(row: &RowForce) -> ContactForce {
     ContactForce {
         bodies: row.bodies,
         connector: row.connector,
@@ -527,9 +384,9 @@ fn contact_force(row: &RowForce) -> ContactForce {
 
 /// Kinetic energy of bodies in given states, and potential energy of gravity and the force laws on them; `room` is a
 /// buffer for what the laws read.
-pub(crate) fn energy_of(
+pub(crate) fn energy_of<'a>(
     bodies: &[Named],
-    forces: &[Arc<dyn ForceLaw>],
+    forces: impl Iterator<Item = &'a Arc<dyn ForceLaw>>,
     time: f64,
     state_of: impl Fn(BodyId) -> BodyState,
     room: &mut Vec<Moving>,
@@ -544,30 +401,11 @@ pub(crate) fn energy_of(
             0.5 * (inertia.mass * state.velocity.length_squared() + inertia.moment * spin * spin);
         energy.potential -= inertia.mass * gravity.dot(state.position);
     }
-    if !forces.is_empty() {
+    let mut forces = forces.peekable();
+    if forces.peek().is_some() {
         room.clear();
         room.extend(ids.map(|body| Moving::from(&state_of(body))));
         energy.potential += potential_of(forces, &Snapshot::new(time, room));
     }
     energy
-}
-
-/// Writes the report of an impact into a reused buffer, as an [`Impact`].
-fn write_impact(told: &mut Event, report: &ImpactReport) {
-    let Event::Impact(impact) = told else { return };
-    impact.time = report.time.seconds();
-    impact.energy_change = report.energy_change;
-    impact.rows.clear();
-    impact.rows.extend(report.rows.iter().map(|row| ImpactRow {
-        primary: row.collision.parties.primary.body,
-        normal_body: row.collision.parties.normal.body,
-        connector: row.collision.connector(),
-        point: row.collision.geometry.point_primary,
-        normal: row.collision.geometry.normal,
-        gap: row.collision.geometry.distance,
-        velocity_before: row.rate_before,
-        velocity_after: row.rate_after,
-        impulse: row.impulse,
-    }));
-    impact.states.clone_from(&report.states);
 }

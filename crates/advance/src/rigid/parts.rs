@@ -112,21 +112,30 @@ impl RigidParts {
     /// Refuses connectors, laws and excluded pairs that name missing bodies.
     fn check_names(&self) -> Result<(), PartsError> {
         let count = self.bodies.len();
-        let check = |part, index, body: BodyId| match body.is_world() || body.index() < count {
-            true => Ok(()),
-            false => Err(PartsError::NoSuchBody { part, index, body, count }),
-        };
+        let check = |part, index, body| check_named(part, index, body, count);
         for (index, connector) in self.connectors.iter().enumerate() {
             connector.bodies().into_iter().try_for_each(|body| check("connector", index, body))?;
         }
         for (index, law) in self.laws.iter().enumerate() {
-            law.bodies().iter().try_for_each(|&body| check("force law", index, body))?;
+            check_bodies_of_law(index, law.as_ref(), count)?;
         }
         for (index, &(a, b)) in self.excluded.iter().enumerate() {
             [a, b].into_iter().try_for_each(|body| check("excluded pair", index, body))?;
         }
         Ok(())
     }
+}
+
+fn check_named(part: &'static str, index: usize, body: BodyId, count: usize) -> Result<(), PartsError> {
+    match body.is_world() || body.index() < count {
+        true => Ok(()),
+        false => Err(PartsError::NoSuchBody { part, index, body, count }),
+    }
+}
+
+/// Refuses a law that names a body which is not among `count`.
+pub(crate) fn check_bodies_of_law(index: usize, law: &dyn ForceLaw, count: usize) -> Result<(), PartsError> {
+    law.bodies().iter().try_for_each(|&body| check_named("force law", index, body, count))
 }
 
 fn check_settings(settings: &RigidSettings, start: Time) -> Result<(), PartsError> {

@@ -14,9 +14,12 @@ use crate::rigid::books::works::write_ledger;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::events::establish;
 use crate::rigid::event::handling::{finish, handle, happen};
-use crate::rigid::event::intervention::{VelocityChange, change_velocities, check_finite};
+use crate::rigid::event::intervention::{
+    LawChange, VelocityChange, change_laws, change_velocities, check_finite,
+};
 use crate::rigid::event::rooms::{Rooms, with_work};
-use crate::rigid::parts::RigidParts;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::parts::{RigidParts, check_bodies_of_law};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::RemedyCounts;
 use crate::rigid::settings::RigidSettings;
@@ -140,7 +143,7 @@ impl RigidSystem {
         self.rooms.assembly.laws().has_potential[law]
     }
 
-    /// Force laws, in the order of their indices.
+    /// Force laws, in the order of their indices, those that were removed included.
     #[must_use]
     pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
         &self.rooms.assembly.laws().all
@@ -215,10 +218,53 @@ impl RigidSystem {
         changes: &[VelocityChange],
     ) -> Result<Option<Handled>, AdvanceError> {
         check_finite(time, changes)?;
+        self.interrupt(time, |rooms, work| change_velocities(rooms, work, changes))
+    }
+
+    /// Adds a force law that acts from a time on. Its index is that of the last of [`laws`](Self::laws); its potential
+    /// at that time is in the ledger's `interventions`. Handle all earlier events first; a time before that of the last
+    /// event counts as that. Tolerances and steps keep the scales of the system as it was made. Returns the report, or
+    /// `None` if nothing is to be reported.
+    ///
+    /// # Errors
+    /// A time that is not finite, or a law that names a body that is not there: nothing is done. An impact, or forces
+    /// after it, that cannot be found: the system cannot go on from it.
+    pub fn add_law(&mut self, time: Time, law: Arc<dyn ForceLaw>) -> Result<Option<Handled>, AdvanceError> {
+        check_finite(time, &[])?;
+        check_bodies_of_law(self.laws().len(), law.as_ref(), self.body_count())?;
+        self.interrupt(time, |rooms, work| change_laws(rooms, work, &LawChange::Add(law)))
+    }
+
+    /// Removes the force law at an index from a time on: it keeps its index, and its work in the ledger. The loss of its
+    /// potential is in the ledger's `interventions`. Does nothing if the law does not act; else as
+    /// [`add_law`](Self::add_law).
+    ///
+    /// # Errors
+    /// A time that is not finite: nothing is done. An impact, or forces after it, that cannot be found: the system
+    /// cannot go on from it.
+    pub fn remove_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
+        check_finite(time, &[])?;
+        if !self.is_acting(law) {
+            return Ok(None);
+        }
+        self.interrupt(time, |rooms, work| change_laws(rooms, work, &LawChange::Remove(law)))
+    }
+
+    /// True if the force law at an index acts; false if it was removed or is not there.
+    #[must_use]
+    pub fn is_acting(&self, law: usize) -> bool {
+        self.rooms.assembly.laws().is_on(law)
+    }
+
+    /// Lets an event of the caller's happen at a time, or at that of the last event if that is later.
+    fn interrupt(
+        &mut self,
+        time: Time,
+        act: impl FnOnce(&mut Rooms, &mut EventWork) -> Result<(), AdvanceError>,
+    ) -> Result<Option<Handled>, AdvanceError> {
         let rooms = &mut self.rooms;
-        let outcome = happen(rooms, time.max(rooms.assembly.now()), |rooms| {
-            with_work(rooms, Cause::Other, |rooms, work| change_velocities(rooms, work, changes))
-        });
+        let outcome =
+            happen(rooms, time.max(rooms.assembly.now()), |rooms| with_work(rooms, Cause::Other, act));
         finish(rooms);
         outcome
     }

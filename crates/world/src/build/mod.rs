@@ -23,11 +23,46 @@ impl World {
     /// [`SceneError`] for values that break a rule, fields that are not simulated yet, impossible shapes, and bodies
     /// that overlap at the start; the error names the field.
     pub fn from_scene(scene: &Scene) -> Result<World, SceneError> {
+        WorldBuilder::from_scene(scene)?.build().map_err(|error| located(error, scene))
+    }
+}
+
+impl WorldBuilder {
+    /// Collects the parts of a scene, to which more can be added before the world is built: force laws of one's own, say.
+    /// Bodies have the ids of their places in the scene, and connectors likewise.
+    ///
+    /// ```
+    /// use halfgap::force::{ConstantForce, ForceFrame, Push};
+    /// use halfgap::geometry::DVec2;
+    /// use halfgap::scene::{Scene, SceneFormat};
+    /// use halfgap::{BodyId, WorldBuilder};
+    /// use std::sync::Arc;
+    ///
+    /// let scene = r#"
+    ///     format = "halfgap-scene-1"
+    ///     title = "Sled"
+    ///     run = { duration = 1.0 }
+    ///     body = [{ name = "sled", shape = { disc = { radius = 0.5 } }, mass = 2.0 }]
+    /// "#;
+    /// let mut builder = WorldBuilder::from_scene(&Scene::parse(scene, SceneFormat::Toml)?)?;
+    /// let push = Push { frame: ForceFrame::World, point: DVec2::ZERO, force: DVec2::new(4.0, 0.0), torque: 0.0 };
+    /// builder.add_force(Arc::new(ConstantForce::new("wind", BodyId(0), push)));
+    /// let mut world = builder.build()?;
+    /// world.advance_to(1.0, &mut |_| ())?;
+    /// assert!((world.state(BodyId(0)).position.x - 1.0).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError`] for values that break a rule, fields that are not simulated yet, and impossible shapes; the error
+    /// names the field. What only shows when the bodies are put together is told by [`build`](Self::build), whose errors
+    /// name bodies.
+    pub fn from_scene(scene: &Scene) -> Result<Self, SceneError> {
         scene.validate_world()?;
         scene.check_supported()?;
         let mut builder = collect(scene)?;
         hints::of(scene, &builder).into_iter().for_each(|hint| builder.warn(hint));
-        builder.build().map_err(|error| located(error, scene))
+        Ok(builder)
     }
 }
 
@@ -241,7 +276,7 @@ mod tests {
             spring = { a = { body = "plate", point = [1, 1] }, b = { body = "world", point = [2, 2] }, rest_length = 1, stiffness = 7, damping = 2 }"#;
         assert_eq!(potential(spring), 14.0);
         let names: Vec<_> =
-            world(spring).expect("a fine world").forces().iter().map(|law| law.name().to_owned()).collect();
+            world(spring).expect("a fine world").forces().map(|law| law.name().to_owned()).collect();
         assert_eq!(names, ["force[0].spring", "force[0].spring.damping"]);
     }
 
@@ -266,7 +301,8 @@ mod tests {
             let world = world(&format!("[[force]]\n{force}")).expect("a fine world");
             let moving: Vec<_> = world.bodies().map(|body| Moving::from(&world.state(body))).collect();
             let mut sums = vec![Wrench::default(); moving.len()];
-            world.forces()[0].apply(&Snapshot::new(time, &moving), &mut Wrenches::new(&mut sums));
+            let law = world.forces().next().expect("the force was added");
+            law.apply(&Snapshot::new(time, &moving), &mut Wrenches::new(&mut sums));
             (sums[0].force, sums[0].torque)
         };
         let up = glam::DVec2::new(0.0, 2.0);

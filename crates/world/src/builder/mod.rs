@@ -6,7 +6,7 @@ mod drift;
 mod warnings;
 
 use crate::connector::ConnectorSpec;
-use crate::force::{ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
+use crate::force::{ForceId, ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
 use crate::rigid_settings::{rigid_settings, tolerances};
 use crate::run_error::RunError;
 use crate::sentry::{EnergyScales, Sentry};
@@ -109,6 +109,8 @@ pub struct WorldBuilder {
     settings: WorldSettings,
     bodies: Vec<BodySpec>,
     laws: Vec<FlightLaw>,
+    /// Uniform gravity that acts on all bodies [m/s^2], beside those in `laws`.
+    gravity: DVec2,
     forces: Vec<Arc<dyn ForceLaw>>,
     connectors: Vec<ConnectorSpec>,
     excluded: Vec<(BodyId, BodyId)>,
@@ -160,9 +162,16 @@ impl WorldBuilder {
         }
     }
 
-    /// Adds a force law; see [`force`](crate::force).
-    pub fn add_force(&mut self, law: Arc<dyn ForceLaw>) {
+    /// Adds a uniform gravity [m/s^2] to those that act on all movable bodies, also on those that
+    /// are added later.
+    pub fn add_gravity_to_all(&mut self, acceleration: DVec2) {
+        self.gravity += acceleration;
+    }
+
+    /// Adds a force law and returns its id, by which [`World::remove_force`] removes it; see [`force`](crate::force).
+    pub fn add_force(&mut self, law: Arc<dyn ForceLaw>) -> ForceId {
         self.forces.push(law);
+        ForceId(self.forces.len() - 1)
     }
 
     /// Adds a connector and returns its id. Bodies joined by a pin or slot do not collide with each other, unless
@@ -203,6 +212,9 @@ impl WorldBuilder {
     /// [`WorldError`] for names that are not unique, numbers out of range, bodies that overlap, and connectors that are
     /// off: the error names the body or the connector, and the number.
     pub fn build(mut self) -> Result<World, WorldError> {
+        let gravity = std::mem::take(&mut self.gravity);
+        let laws = self.laws.iter_mut().zip(&self.bodies).filter(|(_, body)| body.inertia.is_some());
+        laws.for_each(|(law, _)| law.acceleration += gravity);
         self.check()?;
         self.stop_vanishing();
         self.align();
@@ -231,7 +243,7 @@ impl WorldBuilder {
         let rules = start_rules(&self.settings, &self.excluded, &tolerances, &scales);
         let total = |bodies: &[BodyPart]| {
             let state = |body: BodyId| bodies[body.index()].state;
-            energy_of(&named, &self.forces, self.settings.start_time, state, &mut Vec::new()).total()
+            energy_of(&named, self.forces.iter(), self.settings.start_time, state, &mut Vec::new()).total()
         };
         let acting = (forces_on(&bodies, &wrenches), torques_on(&bodies, &wrenches));
         let given = total(&bodies);
@@ -243,25 +255,12 @@ impl WorldBuilder {
         let energies = energy_scales(&bodies, acting, &start, (&self.settings, &tolerances));
         let sentry = Sentry::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales, tolerances);
-        let parts = RigidParts {
-            bodies,
-            connectors: connectors.clone(),
-            laws: self.forces.clone(),
-            excluded: self.excluded,
-        };
+        let parts =
+            RigidParts { bodies, connectors: connectors.clone(), laws: self.forces, excluded: self.excluded };
         let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(WorldParts {
-            system,
-            bodies: named,
-            forces: self.forces,
-            connectors,
-            now,
-            warnings,
-            start,
-            sentry,
-        }))
+        Ok(World::new(WorldParts { system, bodies: named, connectors, now, warnings, start, sentry }))
     }
 
     /// Sets to 0 the speeds whose squares would underflow.
@@ -294,26 +293,17 @@ impl WorldBuilder {
         let moving: Vec<_> = self.bodies.iter().map(|body| Moving::from(&body.state)).collect();
         let now = Snapshot::new(self.settings.start_time, &moving);
         let mut own = vec![Wrench::default(); moving.len()];
+        let accelerated = |body: BodyId, sum: &Wrench| {
+            let body = &self.bodies[body.index()];
+            let acceleration = |inertia| acceleration(inertia, farthest_reach(body), DVec2::ZERO, sum);
+            (body.name.clone(), body.inertia.as_ref().map_or(0.0, acceleration))
+        };
         for law in &self.forces {
             let is_left = |body: &BodyId| own.get(body.index()).is_some_and(|sum| *sum != Wrench::default());
             if law.bodies().iter().any(is_left) {
                 break;
             }
-            law.apply(&now, &mut Wrenches::new(&mut own));
-            for &body in law.bodies() {
-                let Some(sum) = own.get_mut(body.index()).map(std::mem::take) else { continue };
-                if !(sum.force.is_finite() && sum.torque.is_finite()) {
-                    let body = self.bodies[body.index()].name.clone();
-                    return Err(WorldError::BadForce { law: law.name().to_owned(), body });
-                }
-                let acceleration = self.bodies[body.index()].inertia.as_ref().map_or(0.0, |inertia| {
-                    acceleration(inertia, farthest_reach(&self.bodies[body.index()]), DVec2::ZERO, &sum)
-                });
-                if acceleration > LARGEST {
-                    let (law, body) = (law.name().to_owned(), self.bodies[body.index()].name.clone());
-                    return Err(WorldError::StrongForce { law, body, largest: LARGEST });
-                }
-            }
+            check_law(law.as_ref(), &now, &mut own, accelerated)?;
         }
         // A wrench that is left acts on a body that its law does not list.
         let Some(unnamed) = own.iter().position(|sum| *sum != Wrench::default()) else {
@@ -368,6 +358,29 @@ impl WorldBuilder {
         }
         scales
     }
+}
+
+/// Refuses a law whose force on a body that it names is not a finite number, or accelerates it by more than [`LARGEST`].
+/// `accelerated` gives the name of a body and the acceleration [m/s^2] of its points under a force and a torque. `own` holds
+/// zeros for the bodies that the law names, before and after; what the law does to others is left in it.
+pub(crate) fn check_law(
+    law: &dyn ForceLaw,
+    now: &Snapshot<'_>,
+    own: &mut [Wrench],
+    accelerated: impl Fn(BodyId, &Wrench) -> (String, f64),
+) -> Result<(), WorldError> {
+    law.apply(now, &mut Wrenches::new(own));
+    for &body in law.bodies() {
+        let Some(sum) = own.get_mut(body.index()).map(std::mem::take) else { continue };
+        let (body, acceleration) = accelerated(body, &sum);
+        if !(sum.force.is_finite() && sum.torque.is_finite()) {
+            return Err(WorldError::BadForce { law: law.name().to_owned(), body });
+        }
+        if acceleration > LARGEST {
+            return Err(WorldError::StrongForce { law: law.name().to_owned(), body, largest: LARGEST });
+        }
+    }
+    Ok(())
 }
 
 /// Returns the errors that the start accepts, and the thresholds that it is to reach.
@@ -475,7 +488,7 @@ pub(crate) fn center_of_mass(body: &BodySpec) -> DVec2 {
 }
 
 /// Acceleration [m/s²] of a body's fastest point, at a reach [m] from its centre of mass, by gravity, force and torque.
-fn acceleration(inertia: &Inertia, reach: f64, gravity: DVec2, wrench: &Wrench) -> f64 {
+pub(crate) fn acceleration(inertia: &Inertia, reach: f64, gravity: DVec2, wrench: &Wrench) -> f64 {
     (gravity + wrench.force / inertia.mass).length() + wrench.torque.abs() / inertia.moment * reach
 }
 

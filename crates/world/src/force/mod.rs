@@ -60,4 +60,8 @@ pub use halfgap_collision::{Anchor, Moving};
 pub use mutual_gravity::MutualGravity;
 pub use rotating::{RotatingForce, Turning};
 pub use spring::Spring;
+/// Names a force law of a world: one that was removed keeps its id, which is not given again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ForceId(pub(crate) usize);
+
 pub(crate) use sum::{potential_of, wrenches_of};

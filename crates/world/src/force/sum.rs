@@ -4,8 +4,8 @@ use super::{ForceLaw, Snapshot, Wrench, Wrenches};
 use std::sync::Arc;
 
 /// Returns the sum of the potentials of the laws that have one [J].
-pub(crate) fn potential_of(laws: &[Arc<dyn ForceLaw>], now: &Snapshot<'_>) -> f64 {
-    laws.iter().filter_map(|law| law.potential(now)).sum()
+pub(crate) fn potential_of<'a>(laws: impl Iterator<Item = &'a Arc<dyn ForceLaw>>, now: &Snapshot<'_>) -> f64 {
+    laws.filter_map(|law| law.potential(now)).sum()
 }
 
 /// Returns the sums of forces and torques on each of `bodies` bodies.

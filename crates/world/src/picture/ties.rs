@@ -45,7 +45,7 @@ pub(super) fn tied_points(world: &World) -> impl Iterator<Item = Anchor> + '_ {
 /// Returns the ends of springs and dashpots, once for laws that follow each other with the same ends.
 fn elastic_ties(world: &World) -> impl Iterator<Item = [Anchor; 2]> + '_ {
     let mut last = None;
-    let ends = world.forces().iter().filter_map(|law| law.ends());
+    let ends = world.forces().filter_map(|law| law.ends());
     ends.filter(move |&ends| last.replace(ends) != Some(ends))
 }
 

@@ -4,6 +4,7 @@ mod failures;
 mod impacts;
 mod integrators;
 mod interventions;
+mod live;
 #[cfg(feature = "scene")]
 mod newcomer;
 #[cfg(feature = "scene")]

@@ -268,6 +268,11 @@ impl Assembly {
         &self.laws
     }
 
+    /// The laws, to add or remove some: groups that have taken over the old ones must have been cut.
+    pub(crate) fn laws_mut(&mut self) -> &mut Laws {
+        &mut self.laws
+    }
+
     /// The body that leads each body's group, if it is in one.
     #[inline]
     pub(crate) fn leader_of(&self) -> &[Option<BodyId>] {

@@ -9,10 +9,13 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(crate) struct Laws {
     pub(crate) all: Vec<Arc<dyn ForceLaw>>,
+    /// Whether each law acts; one that was removed does not.
+    is_on: Vec<bool>,
     /// Indices of the laws that act on each body.
     of: ByBody<usize>,
     /// Whether each law has a potential.
     pub(crate) has_potential: Vec<bool>,
+    body_count: usize,
 }
 
 impl Laws {
@@ -21,8 +24,34 @@ impl Laws {
         Self {
             of: ByBody::new(body_count, all.iter().map(|law| law.bodies()).enumerate()),
             has_potential: all.iter().map(|law| law.potential(snapshot).is_some()).collect(),
+            is_on: vec![true; all.len()],
             all,
+            body_count,
         }
+    }
+
+    /// Adds a law that acts from now on.
+    pub(crate) fn add(&mut self, law: Arc<dyn ForceLaw>, has_potential: bool) {
+        self.has_potential.push(has_potential);
+        self.is_on.push(true);
+        self.all.push(law);
+        self.list_by_body();
+    }
+
+    /// Removes a law: it keeps its index and its name, but acts no more.
+    pub(crate) fn remove(&mut self, law: usize) {
+        self.is_on[law] = false;
+        self.list_by_body();
+    }
+
+    /// True for a law that acts, false for one that was removed or is not there.
+    pub(crate) fn is_on(&self, law: usize) -> bool {
+        self.is_on.get(law).is_some_and(|&is_on| is_on)
+    }
+
+    fn list_by_body(&mut self) {
+        let acting = self.all.iter().map(|law| law.bodies()).enumerate();
+        self.of = ByBody::new(self.body_count, acting.filter(|&(index, _)| self.is_on[index]));
     }
 
     /// Indices of the laws that act on a body.

@@ -133,6 +133,11 @@ impl Books {
         self.ledger.projections = before;
     }
 
+    /// Opens an account for the work of a law that was added.
+    pub(crate) fn add_law(&mut self) {
+        self.ledger.laws.push(0.0);
+    }
+
     /// Books a change of energy [J] by the caller.
     pub(crate) fn book_intervention(&mut self, change: f64) {
         self.ledger.interventions += change;

@@ -1,7 +1,8 @@
-//! Velocity changes by the caller: they take effect at once, and contacts and connectors respond as to an impact. Forces
-//! that last are laws.
+//! Changes by the caller while the system runs: of velocities, which take effect at once, and of the force laws that act.
+//! Contacts and connectors respond as to an impact.
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::law::{ForceLaw, Snapshot};
 use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, interrupt};
 use crate::rigid::contacts::pairs::Pairs;
@@ -16,17 +17,74 @@ use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::pace::forget_paces;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState};
+use halfgap_collision::{BodyId, BodyState, Moving};
+use std::sync::Arc;
 
+/// Changes velocities of bodies at once.
 pub(crate) fn change_velocities(
     rooms: &mut Rooms,
     work: &mut EventWork,
     changes: &[VelocityChange],
 ) -> Result<(), AdvanceError> {
+    restart(rooms, work, changes.iter().map(|change| change.body), |assembly, books| {
+        for change in changes {
+            if assembly.is_movable(change.body) {
+                change_velocity(assembly, books, change);
+            }
+        }
+    })
+}
+
+/// A change of the force laws that act.
+pub(crate) enum LawChange {
+    /// A law begins to act.
+    Add(Arc<dyn ForceLaw>),
+    /// The law at an index acts no more.
+    Remove(usize),
+}
+
+/// Adds or removes a law; what its potential adds to the energy is booked as an intervention.
+pub(crate) fn change_laws(
+    rooms: &mut Rooms,
+    work: &mut EventWork,
+    change: &LawChange,
+) -> Result<(), AdvanceError> {
+    let law = match change {
+        LawChange::Add(law) => law.clone(),
+        LawChange::Remove(index) => rooms.assembly.laws().all[*index].clone(),
+    };
+    restart(rooms, work, law.bodies().iter().copied(), |assembly, books| {
+        let now = assembly.now();
+        let movings: Vec<Moving> = assembly.flyers().iter().map(|flyer| flyer.moving_at(now)).collect();
+        let snapshot = Snapshot::of_unwound(now.seconds(), &movings, assembly.flyers());
+        let potential = law.potential(&snapshot).unwrap_or(0.0);
+        match change {
+            LawChange::Add(law) => {
+                let has_potential = law.potential(&snapshot).is_some();
+                assembly.laws_mut().add(law.clone(), has_potential);
+                books.add_law();
+                books.book_intervention(potential);
+            }
+            LawChange::Remove(index) => {
+                assembly.laws_mut().remove(*index);
+                books.book_intervention(-potential);
+            }
+        }
+    })
+}
+
+/// Ends the motion of bodies and of what moves with them, lets `act` change something about them, and starts them
+/// again; contacts and connectors against which they then move respond by the impact law.
+fn restart(
+    rooms: &mut Rooms,
+    work: &mut EventWork,
+    bodies: impl Iterator<Item = BodyId>,
+    act: impl FnOnce(&mut Assembly, &mut Books),
+) -> Result<(), AdvanceError> {
     work.seeds.clear();
-    work.seeds
-        .extend(changes.iter().map(|change| change.body).filter(|&body| rooms.assembly.is_movable(body)));
+    work.seeds.extend(bodies.filter(|&body| rooms.assembly.is_movable(body)));
     if work.seeds.is_empty() {
+        act(&mut rooms.assembly, &mut rooms.books);
         return Ok(());
     }
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
@@ -35,13 +93,9 @@ pub(crate) fn change_velocities(
         .extend(work.seeds.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now())));
     cut_groups(rooms, &mut work.region);
     take_back_cut(&mut rooms.assembly, &mut rooms.books, &work.seeds, &work.before);
-    for change in changes {
-        if rooms.assembly.is_movable(change.body) {
-            change_velocity(&mut rooms.assembly, &mut rooms.books, change);
-        }
-    }
+    act(&mut rooms.assembly, &mut rooms.books);
     forget_past(&mut rooms.pairs, &mut rooms.zeno, work);
-    // Velocities decide which contacts take part, and they have changed.
+    // Velocities and laws decide which contacts take part and what moves together, and they have changed.
     collect_again(rooms, work);
     collide(rooms, work)
 }
@@ -94,8 +148,8 @@ fn forget_past(pairs: &mut Pairs, zeno: &mut Zeno, work: &EventWork) {
     forget_paces(zeno, work.region.bodies());
 }
 
-/// A change of the velocities of a body. A zero change restarts the body's group, which makes changed force laws take
-/// effect.
+/// A change of the velocities of a body. A zero change restarts the body's group, which makes changed parameters of force
+/// laws take effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VelocityChange {
     /// The body; a fixed body and the background keep their velocities.

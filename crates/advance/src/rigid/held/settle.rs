@@ -93,10 +93,10 @@ pub(crate) fn settle(
     while drop_idle(view.assembly, view.pairs, region, settling, stage) {
         solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
     }
-    if region.is_unsound() || (!is_start && (settling.is_shared() || settling.has_pulled)) {
-        if view.assembly.remedies().is_on(Remedy::NearlySparing) {
-            spare_nearly_redundant(view.assembly, region, settling);
-        }
+    let may_nearly_depend =
+        region.is_unsound() || (!is_start && (settling.is_shared() || settling.has_pulled));
+    if may_nearly_depend && view.assembly.remedies().is_on(Remedy::NearlySparing) {
+        spare_nearly_redundant(view.assembly, region, settling);
     }
     if (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::Sparing) {
         // The last problem may still have had candidates that were then dropped without a force.

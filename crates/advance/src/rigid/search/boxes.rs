@@ -149,7 +149,6 @@ fn leaving_time_within(path: &Polynomial, [least, greatest]: [DVec2; 2], core: &
 
 #[cfg(test)]
 mod tests {
-    use crate::rigid::watch::staying::way;
 
     use super::*;
     use halfgap_collision::BodyState;

@@ -305,7 +305,6 @@ fn look_ahead(
 
 #[cfg(test)]
 mod tests {
-    use crate::rigid::held::settle::spin;
 
     use super::*;
     use crate::rigid::bodies::flyer::FlightLaw;

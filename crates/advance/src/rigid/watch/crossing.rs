@@ -316,7 +316,6 @@ fn part_by_parabola(last: Sample, far: Sample, left: Sample) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::rigid::watch::staying::way;
 
     use super::*;
 

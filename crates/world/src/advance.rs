@@ -1,0 +1,199 @@
+//! The advance of a world, and how it tells its caller what happens. What lies below finds and handles the events.
+
+use crate::event::{ContactEvent, Event, ImpactRow};
+use crate::run_error::RunError;
+use crate::world::{World, contact_force};
+use halfgap_advance::rigid::{AdvanceError, Handled, ImpactReport, RigidSystem, RowForce};
+use halfgap_advance::{Time, advance_watched};
+use std::ops::ControlFlow;
+
+impl World {
+    /// Advances to a time [s] and reports each event in order; does nothing if the time is in the past.
+    ///
+    /// A stop does not change the motion: an advance in one call and in many give the same bits. An impact within
+    /// time-location error before `time` may be reported by the next call instead, with its own time; one exactly at
+    /// `time` may be reported by either call.
+    ///
+    /// # Errors
+    /// [`RunError::NotATime`] for a time that is not finite. [`RunError::Astray`] if connectors have come apart, bodies
+    /// overlap or the energy books do not close at that time. Another error if an event or a step cannot be simulated:
+    /// the world stays at that time. Both kinds are repeated on every further attempt, except [`RunError::Crawls`]
+    /// and [`RunError::TooFast`]: after these an advance over a shorter duration may go on, unless a longer one is
+    /// planned ([`WorldSettings::duration`](crate::WorldSettings::duration)).
+    pub fn advance_to(&mut self, time: f64, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
+        let outcome = self.advance_while(time, &mut |event| {
+            on_event(event);
+            ControlFlow::Continue(())
+        });
+        outcome.map(|_| ())
+    }
+
+    /// Advances like [`advance_to`](Self::advance_to), but stops after the first event for which `on_event` returns
+    /// [`ControlFlow::Break`], at the time of that event, and returns that `Break`. One event may have several reports (an
+    /// impact, then contacts that end and begin): those that remain are still delivered. A later call continues as if
+    /// there had been no stop, and reports further events of the same time.
+    ///
+    /// # Errors
+    /// Those of [`advance_to`](Self::advance_to).
+    pub fn advance_while(
+        &mut self,
+        time: f64,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RunError> {
+        self.advance_watched(time, on_event, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Advances like [`advance_to`](Self::advance_to), but handles at most `budget` events, those included that are not
+    /// reported, such as the ends of steps. Returns [`ControlFlow::Break`] if the budget was used up before `time`: the
+    /// world is then at the time of its last event, and a later call continues as if there had been no stop. A page that
+    /// must answer its user asks its clock between calls of some hundred events each.
+    ///
+    /// # Errors
+    /// Those of [`advance_to`](Self::advance_to).
+    pub fn advance_for(
+        &mut self,
+        time: f64,
+        budget: u64,
+        on_event: &mut dyn FnMut(&Event),
+    ) -> Result<ControlFlow<()>, RunError> {
+        if budget == 0 && time > self.time() {
+            return Ok(ControlFlow::Break(()));
+        }
+        let mut left = budget;
+        let mut on_each = |event: &Event| {
+            on_event(event);
+            ControlFlow::Continue(())
+        };
+        self.advance_each(time, &mut on_each, &mut |_, _| {
+            left = left.saturating_sub(1);
+            if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
+    }
+
+    /// Advances like [`advance_while`](Self::advance_while); `on_quiet` is called with the present time [s] after each
+    /// step that is no event for callers, and may stop the advance there.
+    pub(crate) fn advance_watched(
+        &mut self,
+        time: f64,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+        on_quiet: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RunError> {
+        self.advance_each(time, on_event, &mut |now, is_quiet| {
+            if is_quiet { on_quiet(now) } else { ControlFlow::Continue(()) }
+        })
+    }
+
+    /// Advances like [`advance_while`](Self::advance_while); `after_each` is called after each event and its reports with
+    /// the present time [s], and with true if nothing was reported. It may stop the advance there.
+    fn advance_each(
+        &mut self,
+        time: f64,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+        after_each: &mut dyn FnMut(f64, bool) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<()>, RunError> {
+        if !time.is_finite() {
+            return Err(RunError::NotATime);
+        }
+        if time >= self.time() {
+            self.ask_guard()?;
+        }
+        let has_failed = self.system.failure().is_some();
+        let until = Time::from_seconds(time);
+        self.system.set_duration(self.sentry.duration.max(time - self.time()));
+        if self.tell_first_impact(on_event).is_break() {
+            return self.conclude(Ok(ControlFlow::Break(())), self.system.now());
+        }
+        let (system, told) = (&mut self.system, &mut self.told);
+        let outcome = advance_watched(system, until, |system, handled| {
+            let told =
+                handled.map_or(ControlFlow::Continue(()), |&handled| tell(told, system, handled, on_event));
+            let after = after_each(system.now().seconds(), handled.is_none());
+            if told.is_break() { told } else { after }
+        });
+        let reached =
+            if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.system.now() };
+        if !has_failed {
+            self.tell_last_words(on_event);
+        }
+        self.conclude(outcome, reached)
+    }
+
+    /// Reports the impact at the start, if there was one that has not been reported.
+    pub(crate) fn tell_first_impact(
+        &mut self,
+        on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if !std::mem::take(&mut self.owes_first_impact) {
+            return ControlFlow::Continue(());
+        }
+        write_impact(&mut self.told, self.system.last_impact());
+        on_event(&self.told)
+    }
+
+    /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system
+    /// that had failed before: its last impact has been reported then.
+    pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
+        if let Some(impact) = self.system.untold_impact() {
+            write_impact(&mut self.told, impact);
+            // The world cannot go on, whatever the caller answers.
+            let _ = on_event(&self.told);
+        }
+    }
+
+    /// Notes how far the system has come, and lets the sentry check it.
+    pub(crate) fn conclude(
+        &mut self,
+        outcome: Result<ControlFlow<()>, AdvanceError>,
+        reached: Time,
+    ) -> Result<ControlFlow<()>, RunError> {
+        self.now = self.now.max(reached);
+        let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));
+        self.stand_guard(outcome)
+    }
+}
+
+/// Reports an event that was handled, its impact in a reused buffer. Returns `Break` if a callback did.
+pub(crate) fn tell(
+    told: &mut Event,
+    system: &RigidSystem,
+    handled: Handled,
+    on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let mut stops = false;
+    if handled.impact {
+        write_impact(told, system.last_impact());
+        stops |= on_event(told).is_break();
+    }
+    let changes = system.contact_changes();
+    let told_of = |row: &RowForce| ContactEvent {
+        time: changes.time.seconds(),
+        contact: contact_force(row),
+        bouncing: row.bouncing,
+    };
+    let ends = changes.end.iter().map(|row| Event::ContactEnds(told_of(row)));
+    let begins = changes.begin.iter().map(|row| Event::ContactBegins(told_of(row)));
+    for event in ends.chain(begins) {
+        stops |= on_event(&event).is_break();
+    }
+    if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// Writes the report of an impact into a reused buffer, as an [`Impact`].
+fn write_impact(told: &mut Event, report: &ImpactReport) {
+    let Event::Impact(impact) = told else { return };
+    impact.time = report.time.seconds();
+    impact.energy_change = report.energy_change;
+    impact.rows.clear();
+    impact.rows.extend(report.rows.iter().map(|row| ImpactRow {
+        primary: row.collision.parties.primary.body,
+        normal_body: row.collision.parties.normal.body,
+        connector: row.collision.connector(),
+        point: row.collision.geometry.point_primary,
+        normal: row.collision.geometry.normal,
+        gap: row.collision.geometry.distance,
+        velocity_before: row.rate_before,
+        velocity_after: row.rate_after,
+        impulse: row.impulse,
+    }));
+    impact.states.clone_from(&report.states);
+}
