@@ -25,7 +25,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeCone
 use halfgap_collision::BodyId as WorldBody;
 use halfgap_contact::{
     Auto, CollisionRow, ContactFile, HeldRows, Impact, ImpactLaw, ImpactOrder, InverseInertia, Problem,
-    RowsField, Solution, Solver, WarmStart,
+    RowKind, RowsField, Solution, Solver, WarmStart,
 };
 
 /// Time spent on each problem [s], and the most solves of one kind.
@@ -164,7 +164,7 @@ fn impact_row(bodies: [WorldBody; 2], jacobian: [f64; 6], rate: f64, bilateral: 
     CollisionRow {
         elasticity: 1.0,
         velocity_tol: 1e-9,
-        bilateral,
+        kind: RowKind::plain(bilateral),
         ..CollisionRow::new(bodies, jacobian, inertia, rate)
     }
 }

@@ -3,7 +3,7 @@
 //! `cargo run -p halfgap-contact --example impact`
 
 use halfgap_collision::BodyId;
-use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder};
+use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, RowKind};
 
 /// Mass of the block [kg].
 const MASS: f64 = 2.0;
@@ -25,7 +25,7 @@ fn corner(side: f64, elasticity: f64) -> CollisionRow {
         response: [0.0, 1.0 / MASS, arm / moment, 0.0, 0.0, 0.0],
         elasticity,
         velocity_tol: 1e-9,
-        bilateral: false,
+        kind: RowKind::Unilateral,
         held: false,
         rate: -SPEED,
     }

@@ -90,6 +90,7 @@ impl Auto {
         warm: Option<&WarmStart>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
+        problem.require_plain(Method::Auto)?;
         let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
         if islands > 1 {
             return self.solve_islands(problem, islands, warm, solution);

@@ -22,7 +22,7 @@ use crate::settings::Settings;
 /// of about growth times 1e-16, so problems with large mass ratios are judged by r_bwd. As r_bwd alone would accept any
 /// answer with huge forces, growth is capped. The thresholds are in [`Settings`]. Source of the natural residual: R.
 /// Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.10. An answer that is not finite has
-/// infinite residuals.
+/// infinite residuals, and so have answers to problems that are not [plain](Problem::is_plain).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residuals {
     /// Natural residual r_nat [-], in units of the scale max|b/s|.
@@ -42,6 +42,9 @@ impl Residuals {
     #[must_use]
     #[inline]
     pub fn of(problem: &Problem, force: &[f64]) -> Self {
+        if !problem.is_plain() {
+            return Self { natural: f64::INFINITY, growth: f64::INFINITY, backward: f64::INFINITY };
+        }
         let mut acceleration = vec![0.0; problem.len()];
         Checker::default().check(problem, force, &mut acceleration)
     }

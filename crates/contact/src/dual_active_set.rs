@@ -166,6 +166,7 @@ impl DualActiveSet {
         warm: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
+        problem.require_plain(Method::DualActiveSet)?;
         if !problem.is_symmetric() {
             let reason = "it needs a symmetric, positive semidefinite matrix";
             return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });

@@ -105,6 +105,32 @@ pub enum ProblemError {
         /// The diagonal entry.
         value: f64,
     },
+    /// The bounds of a row's force are NaN, or the least exceeds the most.
+    #[error("row {row}: the least force must be at most the most force, got {least} and {most}")]
+    BadBounds {
+        /// The row.
+        row: usize,
+        /// The least force \[N\].
+        least: f64,
+        /// The most force \[N\].
+        most: f64,
+    },
+    /// A coefficient of friction is negative, NaN or infinite.
+    #[error("row {row}: the coefficient of friction must be zero or positive and finite, got {coefficient}")]
+    BadFriction {
+        /// The row.
+        row: usize,
+        /// The coefficient.
+        coefficient: f64,
+    },
+    /// The force of a row is bounded by that of a row that is not a unilateral one before it.
+    #[error("row {row}: friction needs a unilateral row before it, row {normal} is none")]
+    NotAContact {
+        /// The row.
+        row: usize,
+        /// The row that it names.
+        normal: usize,
+    },
     /// A diagonal entry of a symmetric matrix is negative, so that A is not positive semidefinite.
     #[error("row {row}: the diagonal entry of a symmetric A must not be negative, got {value}")]
     NegativeDiagonal {
@@ -132,6 +158,16 @@ pub enum SolveError {
         /// Number of pivots or iterations made.
         iterations: usize,
     },
+    /// The method does not take rows of a kind; see [`RowKind`](crate::RowKind).
+    #[error("{method} does not take {kind}: row {row} is one")]
+    UnsupportedRow {
+        /// The method.
+        method: Method,
+        /// Index of the row.
+        row: usize,
+        /// Words for its kind.
+        kind: &'static str,
+    },
     /// The method does not apply to this kind of problem.
     #[error("{method} does not apply: {reason}")]
     NotApplicable {
@@ -143,12 +179,13 @@ pub enum SolveError {
 }
 
 impl SolveError {
-    /// Index of the row at which a contradiction showed; `None` for other errors.
+    /// Index of the row at which a contradiction showed, or that is not supported; `None` for other errors.
     #[must_use]
     #[inline]
     pub fn row(&self) -> Option<usize> {
         match self {
             Self::Infeasible(infeasibility) => Some(infeasibility.row),
+            Self::UnsupportedRow { row, .. } => Some(*row),
             Self::Unsolved { .. } | Self::NotApplicable { .. } => None,
         }
     }

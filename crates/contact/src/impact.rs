@@ -111,7 +111,7 @@ impl Impact {
     pub fn set_rows(&mut self, rows: impl IntoIterator<Item = CollisionRow>) {
         self.rows.clear();
         self.rows.extend(rows);
-        self.has_connectors = self.rows.iter().any(|row| row.bilateral);
+        self.has_connectors = self.rows.iter().any(|row| row.is_bilateral());
         self.rates.clear();
         self.rates.extend(self.rows.iter().map(|row| row.rate));
         self.impulses.clear();
@@ -201,7 +201,7 @@ impl Impact {
     /// of a bilateral one.
     fn violation(&self, row: usize) -> f64 {
         // Most impacts have no connectors; a scan of all rows then reads only their rates.
-        let is_bilateral = self.has_connectors && self.rows[row].bilateral;
+        let is_bilateral = self.has_connectors && self.rows[row].is_bilateral();
         if is_bilateral { self.rates[row].abs() } else { -self.rates[row] }
     }
 

@@ -61,6 +61,14 @@ pub enum FileError {
     /// The file has both `A` and `J`, which exclude each other.
     #[error("the fields `A` and `J` exclude each other: which of them is the problem?")]
     Both,
+    /// A problem has a row for which the format has no fields.
+    #[error("row {row} is {kind}, which a file of a contact problem cannot hold")]
+    UnsupportedRow {
+        /// Index of the row.
+        row: usize,
+        /// Words for its kind.
+        kind: &'static str,
+    },
     /// The numbers are not a contact problem.
     #[error("{0}")]
     Problem(#[from] ProblemError),
@@ -188,8 +196,14 @@ impl ContactFile {
     }
 
     /// Makes the file of `problem`, to be replayed later. Keys of rows are not part of it.
-    #[must_use]
-    pub fn of(problem: &Problem) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::UnsupportedRow`] for a problem that is not [plain](Problem::is_plain): the format has no fields for it.
+    pub fn of(problem: &Problem) -> Result<Self, FileError> {
+        if let Some((row, kind)) = problem.unplain_row() {
+            return Err(FileError::UnsupportedRow { row, kind });
+        }
         let mut file = ContactFile {
             format: PROBLEM_FORMAT.to_owned(),
             symmetric: problem.is_symmetric(),
@@ -209,7 +223,7 @@ impl ContactFile {
                 file.a = Some(MatrixField::Sparse { n: matrix.rows(), triplets: triplets(matrix) });
             }
         }
-        file
+        Ok(file)
     }
 
     /// Writes the file as JSON.

@@ -481,6 +481,7 @@ impl Solver for Lemke {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        problem.require_plain(Method::Lemke)?;
         (self.pivots, self.is_certain) = (0, false);
         self.prepare(problem);
         let mut doubtful = None;

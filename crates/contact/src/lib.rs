@@ -30,7 +30,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `problem`, `matrix` | a problem by the rows of bodies, or by the entries of A; checked when built |
+//! | `problem`, `kind`, `matrix` | a problem by the rows of bodies, or by the entries of A; checked when built |
 //! | `solution`, `check` | the answer and its residuals |
 //! | `settings`, `error`, `solver` | thresholds and caps of the methods, errors, the trait of a method |
 //! | `system`, `entries` | the problem scaled to a unit diagonal, on which the symmetric methods work |
@@ -69,6 +69,7 @@ mod interior_point;
 mod islands;
 #[cfg(feature = "json")]
 mod json;
+mod kind;
 mod least_norm;
 mod lemke;
 mod line_search;
@@ -101,6 +102,7 @@ pub use held_rows::HeldRows;
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
 pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};
+pub use kind::RowKind;
 pub use lemke::Lemke;
 pub use problem::{ContactKey, InverseInertia, Problem, ProblemBody, Row};
 pub use proximal_newton::ProximalNewton;

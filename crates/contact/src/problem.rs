@@ -14,6 +14,7 @@
 //! nonpenetrating rigid bodies", SIGGRAPH '94, 23-34, section 3.
 
 use crate::error::ProblemError;
+use crate::kind::{FurtherRows, RowKind};
 use crate::matrix::{BodyRows, Matrix, SparseMatrix, check_finite};
 
 /// A contact problem: the rows J and inverse masses of bodies, or the entries of A, and the offsets b of a = A f + b.
@@ -42,7 +43,10 @@ use crate::matrix::{BodyRows, Matrix, SparseMatrix, check_finite};
 pub struct Problem {
     pub(crate) matrix: Matrix,
     pub(crate) offset: Vec<f64>,
+    /// True for each row that is bilateral.
     pub(crate) bilateral: Vec<bool>,
+    /// The rows that are neither unilateral nor bilateral, or whose force acts in a direction of its own.
+    pub(crate) further: FurtherRows,
     pub(crate) keys: Vec<ContactKey>,
 }
 
@@ -87,8 +91,11 @@ pub struct Row {
     /// b_i, negative when the gap closes: acceleration of the gap without contact forces [m/s²], or in impact problems
     /// its rate less the rate to be reached [m/s].
     pub offset: f64,
-    /// True for the row of a connector (a = 0, f of either sign), false for a contact.
-    pub bilateral: bool,
+    /// How its force and its acceleration belong together.
+    pub kind: RowKind,
+    /// Coefficients of the force for x, y \[1\] and rotation \[m\] of the primary, then of the normal side, where it does
+    /// not act in the direction that is measured; `None` if it does.
+    pub force: Option<[[f64; 3]; 2]>,
     /// Identity for warm starts.
     pub key: Option<ContactKey>,
 }
@@ -99,7 +106,14 @@ impl Row {
     #[must_use]
     #[inline]
     pub fn new(body: ProblemBody, coefficients: [f64; 3], offset: f64) -> Self {
-        Row { primary: (body, coefficients), normal: None, offset, bilateral: false, key: None }
+        Row {
+            primary: (body, coefficients),
+            normal: None,
+            offset,
+            kind: RowKind::Unilateral,
+            force: None,
+            key: None,
+        }
     }
 
     /// Adds the normal body, with its coefficients for x, y \[1\] and rotation \[m\].
@@ -129,7 +143,30 @@ impl Row {
     #[must_use]
     #[inline]
     pub fn bilateral(self) -> Self {
-        Row { bilateral: true, ..self }
+        Row { kind: RowKind::Bilateral, ..self }
+    }
+
+    /// Bounds the force \[N\] of the row by constants: see [`RowKind::Bounded`].
+    #[must_use]
+    #[inline]
+    pub fn bounded(self, least: f64, most: f64) -> Self {
+        Row { kind: RowKind::Bounded { least, most }, ..self }
+    }
+
+    /// Bounds the force of the row by a coefficient times that of a unilateral row added before: see
+    /// [`RowKind::Friction`].
+    #[must_use]
+    #[inline]
+    pub fn friction(self, normal: usize, coefficient: f64) -> Self {
+        Row { kind: RowKind::Friction { normal, coefficient }, ..self }
+    }
+
+    /// Lets the force act in a direction of its own: its coefficients for x, y \[1\] and rotation \[m\] of the primary,
+    /// then of the normal side (zeros if that is immovable).
+    #[must_use]
+    #[inline]
+    pub fn with_force(self, primary: [f64; 3], normal: [f64; 3]) -> Self {
+        Row { force: Some([primary, normal]), ..self }
     }
 
     /// Gives the row an identity for warm starts.
@@ -150,6 +187,7 @@ impl Problem {
             matrix: Matrix::Bodies(BodyRows::new()),
             offset: Vec::new(),
             bilateral: Vec::new(),
+            further: FurtherRows::default(),
             keys: Vec::new(),
         }
     }
@@ -226,6 +264,7 @@ impl Problem {
             matrix,
             offset: vec![0.0; offset.len()],
             bilateral: vec![false; offset.len()],
+            further: FurtherRows::default(),
             keys: Vec::new(),
         };
         problem.set_offset(offset)?;
@@ -246,6 +285,7 @@ impl Problem {
         }
         self.offset.clear();
         self.bilateral.clear();
+        self.further.clear();
         self.keys.clear();
     }
 
@@ -274,11 +314,14 @@ impl Problem {
     /// problem is unchanged then.
     pub fn add_row(&mut self, row: &Row) -> Result<usize, ProblemError> {
         let index = self.offset.len();
+        check_finite(index, "the offset b", row.offset)?;
+        let measured = [row.primary.1, row.normal.map_or([0.0; 3], |normal| normal.1)];
+        let direction = row.force.filter(|force| *force != measured);
+        FurtherRows::check_row(index, row.kind, direction, self)?;
         let Matrix::Bodies(bodies) = &mut self.matrix else {
             return Err(ProblemError::NoBodies);
         };
         let columns = bodies.inverse_mass.len();
-        check_finite(index, "the offset b", row.offset)?;
         for (body, coefficients) in std::iter::once(row.primary).chain(row.normal) {
             let column = 3 * body.0 as usize;
             if column + 3 > columns {
@@ -292,7 +335,8 @@ impl Problem {
             return Err(error);
         }
         self.offset.push(row.offset);
-        self.bilateral.push(row.bilateral);
+        self.bilateral.push(row.kind == RowKind::Bilateral);
+        self.further.push(index, row.kind, direction);
         if let Some(key) = row.key {
             self.keys.resize(index, ContactKey::NONE);
             self.keys.push(key);
@@ -315,7 +359,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Sets which rows are bilateral (true) and which are unilateral (false).
+    /// Makes all rows bilateral (true) or unilateral (false).
     ///
     /// # Errors
     ///
@@ -324,6 +368,7 @@ impl Problem {
     pub fn set_bilateral(&mut self, bilateral: &[bool]) -> Result<(), ProblemError> {
         check_length("bilateral", bilateral.len(), self.offset.len())?;
         self.bilateral.copy_from_slice(bilateral);
+        self.further.clear();
         Ok(())
     }
 
@@ -360,6 +405,25 @@ impl Problem {
     #[inline]
     pub fn offset(&self) -> &[f64] {
         &self.offset
+    }
+
+    /// Kind of a row.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    #[must_use]
+    #[inline]
+    pub fn kind(&self, row: usize) -> RowKind {
+        self.further.kind(row).unwrap_or(RowKind::plain(self.bilateral[row]))
+    }
+
+    /// Coefficients of the force of a row for x, y \[1\] and rotation \[m\] of the primary, then of the normal side;
+    /// `None` if it acts in the direction that is measured.
+    #[must_use]
+    #[inline]
+    pub fn force_direction(&self, row: usize) -> Option<[[f64; 3]; 2]> {
+        self.further.direction(row)
     }
 
     /// One flag per row: true if it is bilateral.

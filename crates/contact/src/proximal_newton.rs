@@ -151,6 +151,7 @@ impl ProximalNewton {
     ) -> Result<(), SolveError> {
         let method = Method::ProximalNewton;
         solution.reset(problem.len(), method);
+        problem.require_plain(method)?;
         if !problem.has_bodies() {
             let reason = "it needs the rows of bodies and their masses";
             return Err(SolveError::NotApplicable { method, reason });

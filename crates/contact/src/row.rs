@@ -1,5 +1,6 @@
 //! Constraint rows made from collision records: the only module here that sees collisions.
 
+use crate::kind::RowKind;
 use crate::problem::InverseInertia;
 use halfgap_collision::{BodyId, Collision};
 
@@ -19,8 +20,8 @@ pub struct CollisionRow {
     pub elasticity: f64,
     /// Closing speed [m/s] up to which the elasticity does not act.
     pub velocity_tol: f64,
-    /// True if the rate must be zero (connector), false if it must not be negative (contact).
-    pub bilateral: bool,
+    /// Which rates are allowed: zero (bilateral), or zero and more (unilateral). Impact laws take no other kinds yet.
+    pub kind: RowKind,
     /// True if the row was a held contact before the impact; an opening rate up to `velocity_tol` is then constraint
     /// error, not separation.
     pub held: bool,
@@ -37,7 +38,7 @@ impl CollisionRow {
         Self {
             elasticity: collision.response.elasticity,
             velocity_tol: collision.tolerances.velocity_tol,
-            bilateral: collision.parties.bilateral,
+            kind: RowKind::plain(collision.parties.bilateral),
             ..Self::new(collision.bodies(), motion.kinematics.jacobian, inertia, motion.normal_velocity)
         }
     }
@@ -57,10 +58,17 @@ impl CollisionRow {
             response: response(&jacobian, inertia),
             elasticity: 0.0,
             velocity_tol: 0.0,
-            bilateral: false,
+            kind: RowKind::Unilateral,
             held: false,
             rate,
         }
+    }
+
+    /// True if the rate must be zero (connector), false if it must not be negative (contact).
+    #[must_use]
+    #[inline]
+    pub fn is_bilateral(&self) -> bool {
+        self.kind == RowKind::Bilateral
     }
 
     /// True if the row's elasticity acts when it closes at `speed` [m/s]: that speed, or the closing speed at the start

@@ -7,7 +7,7 @@ use std::cell::Cell;
 
 use halfgap_contact::{
     Auto, CollisionRow, ContactKey, DualActiveSet, HeldRows, Impact, ImpactLaw, ImpactOrder, InverseInertia,
-    Method, Problem, ProblemBody, ProximalNewton, Row, Solution, Solver, WarmStart,
+    Method, Problem, ProblemBody, ProximalNewton, Row, RowKind, Solution, Solver, WarmStart,
 };
 
 thread_local! {
@@ -138,7 +138,7 @@ fn impact_rows(boxes: u32, step: u32) -> impl Iterator<Item = CollisionRow> {
         CollisionRow {
             elasticity: 0.5,
             velocity_tol: 1e-9,
-            bilateral,
+            kind: RowKind::plain(bilateral),
             ..CollisionRow::new([upper, lower], jacobian, [upper, lower].map(inertia), rate)
         }
     })

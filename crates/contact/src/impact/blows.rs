@@ -29,7 +29,7 @@ const BLOWS_OF_ANGLE: f64 = PI;
 impl Impact {
     /// Number of blows that each row may take.
     pub(super) fn blows(&self) -> usize {
-        let rebounding = || self.rows.iter().filter(|row| !row.bilateral && row.elasticity > 0.0);
+        let rebounding = || self.rows.iter().filter(|row| !row.is_bilateral() && row.elasticity > 0.0);
         let of_few = match rebounding().count() {
             1..=FEW_CONTACTS => self.blows_of_angles(),
             _ => 0.0,

@@ -242,7 +242,9 @@ impl Impact {
         let rule = |row: &CollisionRow| {
             let sum = row.rate + row.velocity_tol + row.response.iter().sum::<f64>();
             let is_finite = (sum + row.jacobian.iter().sum::<f64>()).is_finite();
-            if !is_finite {
+            if !row.kind.is_plain() {
+                Some("impact laws take unilateral and bilateral rows only")
+            } else if !is_finite {
                 Some("rate, velocity_tol, jacobian and response must be finite")
             } else if !(0.0..=1.0).contains(&row.elasticity) {
                 Some("elasticity must be between 0 and 1")

@@ -135,11 +135,11 @@ impl Impact {
     fn list_at_rest(&self, locked: &mut Locked, rest: f64) {
         let Locked { at_rest, parts, .. } = locked;
         self.list_held(at_rest, rest);
-        at_rest.retain(|&row| self.rows[row].bilateral || !self.is_violated(row, rest));
+        at_rest.retain(|&row| self.rows[row].is_bilateral() || !self.is_violated(row, rest));
         parts.clear();
         parts.resize(self.rows.len(), Part::None);
         for &row in &*at_rest {
-            parts[row] = if self.rows[row].bilateral { Part::Connector } else { Part::Pressed };
+            parts[row] = if self.rows[row].is_bilateral() { Part::Connector } else { Part::Pressed };
         }
     }
 

@@ -178,7 +178,7 @@ impl Impact {
         let mut few = FewRows { count: set.len(), ..FewRows::default() };
         for (place, &row) in set.iter().enumerate() {
             few.offset[place] = self.rates[row] - self.scratch.targets[row];
-            few.bilateral[place] = self.rows[row].bilateral;
+            few.bilateral[place] = self.rows[row].is_bilateral();
             let mut column = 0;
             for (other, value) in self.couplings.row(row) {
                 while column < set.len() && set[column] < other {
@@ -223,7 +223,7 @@ impl Impact {
             let impulse = many.solution.force[place];
             self.noise = self.noise.max(left * self.length(row));
             if impulse != 0.0 {
-                self.apply(row, if self.rows[row].bilateral { impulse } else { pushing(impulse) });
+                self.apply(row, if self.rows[row].is_bilateral() { impulse } else { pushing(impulse) });
             }
         }
         Ok(())
@@ -260,7 +260,7 @@ impl Impact {
         for &row in set {
             let (b, length) = (self.rates[row] - self.scratch.targets[row], self.length(row));
             many.problem.offset.push(b);
-            many.problem.bilateral.push(self.rows[row].bilateral);
+            many.problem.bilateral.push(self.rows[row].is_bilateral());
             many.scale = many.scale.max((b / length).abs());
             let slow = CONTRADICTION * self.rows[row].velocity_tol;
             allowed = allowed.max((slow + self.noise + many.inconsistency * self.fastest) / length);
@@ -280,6 +280,7 @@ impl Impact {
 mod tests {
     use super::*;
     use crate::impact::{ImpactLaw, ImpactOrder};
+    use crate::kind::RowKind;
     use crate::problem::InverseInertia;
     use crate::row::CollisionRow;
     use halfgap_collision::BodyId;
@@ -332,7 +333,7 @@ mod tests {
             let jacobian = [x, y, turn, -x, -y, 0.0];
             CollisionRow {
                 velocity_tol: 6e-5,
-                bilateral,
+                kind: RowKind::plain(bilateral),
                 ..CollisionRow::new([BodyId(0), BodyId::WORLD], jacobian, [body, fixed], rate)
             }
         };
@@ -366,7 +367,7 @@ mod tests {
             let jacobian = [x, y, turns[0], -x, -y, turns[1]];
             CollisionRow {
                 velocity_tol: 3e-5,
-                bilateral,
+                kind: RowKind::plain(bilateral),
                 ..CollisionRow::new(bodies, jacobian, inertia, rate)
             }
         };
@@ -397,7 +398,7 @@ mod tests {
         ]);
         ImpactLaw::SerialSeparate.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
         let rates = impact.rows().iter().zip(impact.rates());
-        let violations = rates.map(|(row, rate)| if row.bilateral { rate.abs() } else { -rate });
+        let violations = rates.map(|(row, rate)| if row.is_bilateral() { rate.abs() } else { -rate });
         assert!(violations.fold(0.0, f64::max) < 1e-7, "{:?}", impact.rates());
         Ok(())
     }
@@ -418,7 +419,7 @@ mod tests {
             CollisionRow {
                 elasticity,
                 velocity_tol: 0.015,
-                bilateral: is_pin,
+                kind: RowKind::plain(is_pin),
                 ..CollisionRow::new(bodies, jacobian, inertia, rate)
             }
         };
@@ -439,7 +440,7 @@ mod tests {
             ]);
             ImpactLaw::SerialGroupedLastpass.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
             let rates = impact.rows().iter().zip(impact.rates());
-            let violations = rates.map(|(row, rate)| if row.bilateral { rate.abs() } else { -rate });
+            let violations = rates.map(|(row, rate)| if row.is_bilateral() { rate.abs() } else { -rate });
             let worst = violations.fold(0.0, f64::max);
             let largest = impact.impulses().iter().fold(0.0f64, |most, impulse| most.max(impulse.abs()));
             assert!(worst < 1e-9 && largest < 1e4, "{turn}: {worst:e} m/s, {largest:e} N s");

@@ -94,7 +94,7 @@ impl NearRows {
     fn push(&mut self, row: &CollisionRow, offset: f64) {
         self.directions.push(Direction::new(row));
         self.offset.push(offset);
-        self.bilateral.push(row.bilateral);
+        self.bilateral.push(row.is_bilateral());
     }
 
     fn count(&self) -> usize {
@@ -345,7 +345,7 @@ impl Impact {
     fn apply_together(&mut self, set: &[usize], near: &NearRows) {
         for (place, &row) in set.iter().enumerate() {
             let impulse = near.force[place].nearest();
-            self.impulses[row] += if self.rows[row].bilateral { impulse } else { pushing(impulse) };
+            self.impulses[row] += if self.rows[row].is_bilateral() { impulse } else { pushing(impulse) };
         }
         let mut reached = std::mem::take(&mut self.scratch.listed);
         reached.clear();
@@ -370,6 +370,7 @@ impl Impact {
 mod tests {
     use super::super::law::{ImpactLaw, ImpactOrder};
     use super::*;
+    use crate::kind::RowKind;
     use crate::problem::InverseInertia;
     use halfgap_collision::BodyId;
     use proptest::prelude::*;
@@ -422,8 +423,11 @@ mod tests {
         // The rods' anchors lie an angle apart, seen from the bob; a ball hits the bob across both.
         for (angle, is_fixed) in [(1e-2, true), (2e-6, true), (2e-7, true), (2e-8, false), (1e-12, false)] {
             let ball = InverseInertia { inverse_mass: 1.0, inverse_moment: 0.0 };
-            let rod =
-                |lean: f64| CollisionRow { bilateral: true, elasticity: 0.0, ..leaning(lean, [0.0; 2], 0.0) };
+            let rod = |lean: f64| CollisionRow {
+                kind: RowKind::Bilateral,
+                elasticity: 0.0,
+                ..leaning(lean, [0.0; 2], 0.0)
+            };
             let hit = CollisionRow {
                 elasticity: 1.0,
                 velocity_tol: 1e-6,

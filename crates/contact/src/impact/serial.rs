@@ -110,10 +110,10 @@ impl Impact {
         let mut set = std::mem::take(&mut self.scratch.set);
         set.clear();
         set.push(focus);
-        if grouping == Grouping::Closing && !self.rows[focus].bilateral {
+        if grouping == Grouping::Closing && !self.rows[focus].is_bilateral() {
             let least = COMPARABLE * self.violation(focus);
             let joins = |&row: &usize| {
-                let is_contact = row != focus && !self.rows[row].bilateral;
+                let is_contact = row != focus && !self.rows[row].is_bilateral();
                 is_contact && self.is_violated(row, small) && self.violation(row) >= least
             };
             set.extend(self.couplings.row(focus).map(|(row, _)| row).filter(joins));
@@ -146,7 +146,7 @@ impl Impact {
         let mut next = 0;
         while next < set.len() {
             for (other, _) in self.couplings.row(set[next]) {
-                let is_tied = self.is_locked(other) || (joins_connectors && self.rows[other].bilateral);
+                let is_tied = self.is_locked(other) || (joins_connectors && self.rows[other].is_bilateral());
                 if is_tied && !listed[other] {
                     listed[other] = true;
                     set.push(other);

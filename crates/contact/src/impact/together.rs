@@ -17,12 +17,12 @@ impl Impact {
     /// Later problems hold them, and their impulses then do no work along them. A rate left in one could add energy
     /// where the elasticity of a contact drives it on.
     pub(super) fn settle_connectors(&mut self, small: f64) -> Result<(), ImpactError> {
-        if !(0..self.rows.len()).any(|row| self.rows[row].bilateral && self.is_violated(row, small)) {
+        if !(0..self.rows.len()).any(|row| self.rows[row].is_bilateral() && self.is_violated(row, small)) {
             return Ok(());
         }
         let mut set = std::mem::take(&mut self.scratch.set);
         set.clear();
-        set.extend((0..self.rows.len()).filter(|&row| self.rows[row].bilateral && self.can_move(row)));
+        set.extend((0..self.rows.len()).filter(|&row| self.rows[row].is_bilateral() && self.can_move(row)));
         self.aim_at_rest();
         let outcome = self.solve_together(&set);
         self.scratch.set = set;
@@ -115,7 +115,8 @@ impl Impact {
         let movable = || (0..self.rows.len()).filter(|&row| self.can_move(row));
         let fastest = movable().fold(0.0f64, |most, row| most.max(self.violation(row) / self.length(row)));
         likely.clear();
-        likely.extend((0..self.rows.len()).map(|row| self.rows[row].bilateral || self.rates[row] <= rest));
+        likely
+            .extend((0..self.rows.len()).map(|row| self.rows[row].is_bilateral() || self.rates[row] <= rest));
         set.clear();
         set.extend(movable().filter(|&row| likely[row] || self.rates[row] <= fastest * self.length(row)));
     }
@@ -146,7 +147,7 @@ impl Impact {
             |row: &CollisionRow, rate| rate <= if row.held { limit.max(row.velocity_tol) } else { limit };
         let is_held = |&index: &usize| {
             let row = &self.rows[index];
-            (row.bilateral || is_slow(row, self.rates[index])) && self.can_move(index)
+            (row.is_bilateral() || is_slow(row, self.rates[index])) && self.can_move(index)
         };
         set.clear();
         set.extend((0..self.rows.len()).filter(is_held));
@@ -169,7 +170,7 @@ impl Impact {
         self.scratch.targets.resize(self.rows.len(), 0.0);
         for &index in set {
             let (row, rate) = (&self.rows[index], self.rates[index]);
-            let rebounds = !row.bilateral && rate < 0.0 && row.rebounds_at(-rate);
+            let rebounds = !row.is_bilateral() && rate < 0.0 && row.rebounds_at(-rate);
             self.scratch.targets[index] = if rebounds { row.elasticity * -rate } else { 0.0 };
         }
     }
@@ -183,7 +184,7 @@ impl Impact {
     /// Solves one row to reach the rate `target` [m/s], and applies the impulse.
     pub(super) fn solve_alone(&mut self, row: usize, target: f64) {
         let b = self.rates[row] - target;
-        let impulse = solve_one(self.couplings.diagonal(row), b, self.rows[row].bilateral);
+        let impulse = solve_one(self.couplings.diagonal(row), b, self.rows[row].is_bilateral());
         self.solves += 1;
         self.apply(row, impulse);
     }
@@ -205,7 +206,7 @@ impl Impact {
         let couplings = &self.couplings;
         let a = [couplings.diagonal(first), couplings.between(first, second), couplings.diagonal(second)];
         let b = [first, second].map(|row| self.rates[row] - self.scratch.targets[row]);
-        let bilateral = [first, second].map(|row| self.rows[row].bilateral);
+        let bilateral = [first, second].map(|row| self.rows[row].is_bilateral());
         let Some(impulses) = solve_two(a, b, bilateral) else {
             return self.solve_many(&[first, second], Beginning::Unknown);
         };

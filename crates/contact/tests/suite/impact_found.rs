@@ -1,7 +1,7 @@
 //! Impacts that laws once answered wrongly.
 
 use halfgap_collision::BodyId;
-use halfgap_contact::{CollisionRow, Impact, ImpactLaw, ImpactOrder, InverseInertia};
+use halfgap_contact::{CollisionRow, Impact, ImpactLaw, ImpactOrder, InverseInertia, RowKind};
 
 /// Bodies, normal, moments about both, rate [m/s], `velocity_tol` [m/s], and whether the row is bilateral.
 type Data = ([u32; 2], [f64; 2], [f64; 2], f64, f64, bool);
@@ -143,7 +143,7 @@ fn rows_that_no_impulses_hold_are_not_driven() {
             CollisionRow {
                 elasticity: 1.0,
                 velocity_tol: slow,
-                bilateral,
+                kind: RowKind::plain(bilateral),
                 ..CollisionRow::new(bodies.map(BodyId), jacobian, bodies.map(inertia), rate)
             }
         }));

@@ -2,7 +2,7 @@
 
 use crate::laws::{LAWS, ORDERS};
 use halfgap_collision::BodyId;
-use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder};
+use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, RowKind};
 use proptest::prelude::*;
 
 /// Rounding of sums of a few products of numbers near 1.
@@ -44,7 +44,7 @@ impl Touch {
             response: std::array::from_fn(|k| jacobian[k] * side(k).inverse[k % 3]),
             elasticity: self.elasticity,
             velocity_tol: 1e-9,
-            bilateral: false,
+            kind: RowKind::Unilateral,
             held: false,
             rate: (0..6).map(|k| jacobian[k] * side(k).velocity[k % 3]).sum(),
         }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::laws::{LAWS, ORDERS};
 use halfgap_collision::BodyId;
-use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, InverseInertia};
+use halfgap_contact::{CollisionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, InverseInertia, RowKind};
 use proptest::prelude::*;
 
 /// Rounding of sums of some products of numbers near 1.
@@ -70,7 +70,7 @@ impl Tie {
         CollisionRow {
             elasticity: self.elasticity,
             velocity_tol: 1e-9,
-            bilateral: self.bilateral,
+            kind: RowKind::plain(self.bilateral),
             ..CollisionRow::new(ids, jacobian, inertia, rate)
         }
     }

@@ -3,6 +3,7 @@
 mod impact_found;
 mod impact_laws;
 mod impact_rows;
+mod kinds;
 mod laws;
 #[cfg(feature = "json")]
 mod problems;

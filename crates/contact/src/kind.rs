@@ -1,0 +1,159 @@
+//! Kinds of rows: how the force of a row and its acceleration belong together, and in which direction the force acts.
+//!
+//! *Invariant*: methods see plain rows only. Rows that are not plain are few and are listed apart, so that a problem
+//! without them costs nothing for them.
+
+use crate::error::{ProblemError, SolveError};
+use crate::problem::Problem;
+use crate::solver::Method;
+
+/// How the force f of a row and its acceleration a belong together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum RowKind {
+    /// f ≥ 0, a ≥ 0, f a = 0: a contact, a rope, a stop.
+    #[default]
+    Unilateral,
+    /// a = 0 with f of either sign: a connector.
+    Bilateral,
+    /// least ≤ f ≤ most, where a = 0 between the bounds, a ≥ 0 at the least force and a ≤ 0 at the most: a motor, a brake,
+    /// friction in a joint.
+    Bounded {
+        /// Least force \[N\]; it may be infinite.
+        least: f64,
+        /// Most force \[N\]; it may be infinite.
+        most: f64,
+    },
+    /// |f| ≤ mu fₙ with the force fₙ of another row, where a = 0 inside the bounds, and a opposes f on them: the tangential
+    /// row of a contact with Coulomb friction.
+    Friction {
+        /// The unilateral row whose force bounds this one's, added before it.
+        normal: usize,
+        /// Coefficient of friction mu \[-\], 0 or more.
+        coefficient: f64,
+    },
+}
+
+impl RowKind {
+    /// The kind of a plain row: bilateral, or unilateral.
+    #[must_use]
+    #[inline]
+    pub fn plain(bilateral: bool) -> Self {
+        if bilateral { Self::Bilateral } else { Self::Unilateral }
+    }
+
+    /// Words for messages.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Unilateral => "a unilateral row",
+            Self::Bilateral => "a bilateral row",
+            Self::Bounded { .. } => "a row bounded by constants",
+            Self::Friction { .. } => "a row bounded by friction",
+        }
+    }
+
+    /// True for a unilateral and for a bilateral row.
+    #[must_use]
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        matches!(self, Self::Unilateral | Self::Bilateral)
+    }
+
+    /// Refuses bounds that are none, and a normal row that is not a unilateral one of `problem`.
+    fn check(&self, row: usize, problem: &Problem) -> Result<(), ProblemError> {
+        match *self {
+            Self::Unilateral | Self::Bilateral => Ok(()),
+            // NaN is no bound.
+            Self::Bounded { least, most } if least <= most => Ok(()),
+            Self::Bounded { least, most } => Err(ProblemError::BadBounds { row, least, most }),
+            Self::Friction { normal, coefficient } => {
+                let is_contact = normal < problem.len() && problem.kind(normal) == Self::Unilateral;
+                if !is_contact {
+                    return Err(ProblemError::NotAContact { row, normal });
+                }
+                let is_sound = coefficient.is_finite() && coefficient >= 0.0;
+                if is_sound { Ok(()) } else { Err(ProblemError::BadFriction { row, coefficient }) }
+            }
+        }
+    }
+}
+
+/// Coefficients of a force for x, y \[1\] and rotation \[m\] of the primary, then of the normal side.
+pub(crate) type Direction = [[f64; 3]; 2];
+
+/// The rows of a problem that are not plain, ascending.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct FurtherRows(Vec<(usize, RowKind, Option<Direction>)>);
+
+impl FurtherRows {
+    pub(crate) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    fn find(&self, row: usize) -> Option<&(usize, RowKind, Option<Direction>)> {
+        self.0.binary_search_by_key(&row, |further| further.0).ok().map(|place| &self.0[place])
+    }
+
+    /// Kind of a row; `None` if it is unilateral or bilateral.
+    pub(crate) fn kind(&self, row: usize) -> Option<RowKind> {
+        self.find(row).map(|further| further.1).filter(|kind| !kind.is_plain())
+    }
+
+    /// Direction of the force of a row; `None` if it acts in the direction that is measured.
+    pub(crate) fn direction(&self, row: usize) -> Option<Direction> {
+        self.find(row).and_then(|further| further.2)
+    }
+
+    /// Refuses bounds and directions that are none, of the row that is to be added to a problem.
+    pub(crate) fn check_row(
+        row: usize,
+        kind: RowKind,
+        direction: Option<Direction>,
+        problem: &Problem,
+    ) -> Result<(), ProblemError> {
+        kind.check(row, problem)?;
+        let mut numbers = direction.iter().flatten().flatten();
+        match numbers.find(|number| !number.is_finite()) {
+            Some(&value) => Err(ProblemError::NotFinite { row, what: "a coefficient of the force", value }),
+            None => Ok(()),
+        }
+    }
+
+    /// Adds a row behind those before, unless it is plain.
+    pub(crate) fn push(&mut self, row: usize, kind: RowKind, direction: Option<Direction>) {
+        if !kind.is_plain() || direction.is_some() {
+            self.0.push((row, kind, direction));
+        }
+    }
+}
+
+impl Problem {
+    /// Refuses, in the name of a method, a problem that has other rows than unilateral and bilateral ones whose forces act
+    /// in the directions that are measured. No method of this crate takes others yet.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::UnsupportedRow`] names the first such row.
+    #[inline]
+    pub fn require_plain(&self, method: Method) -> Result<(), SolveError> {
+        match self.unplain_row() {
+            Some((row, kind)) => Err(SolveError::UnsupportedRow { method, row, kind }),
+            None => Ok(()),
+        }
+    }
+
+    /// The first row that is not plain, with words for its kind.
+    pub(crate) fn unplain_row(&self) -> Option<(usize, &'static str)> {
+        let &(row, kind, _) = self.further.0.first()?;
+        let turned = "a row whose force acts in another direction than is measured";
+        Some((row, if kind.is_plain() { turned } else { kind.name() }))
+    }
+
+    /// True if all rows are unilateral or bilateral, with forces in the directions that are measured.
+    #[must_use]
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        self.further.0.is_empty()
+    }
+}
