@@ -3,13 +3,15 @@
 //! ```text
 //! cargo run --profile dist -p halfgap-tests --example bits
 //! cargo run --profile dist -p halfgap-tests --example bits -- --count 100 --each   # a line for each scene
+//! cargo run --profile dist -p halfgap-tests --example bits -- --remedies           # how often each remedy acts
+//! cargo run --profile dist -p halfgap-tests --example bits -- --without haste      # with one remedy off
 //! ```
 //!
 //! The scenes of the repository, the reference scenes, and `--count` generated ones of each kind. A run ends after so
 //! many reports of its progress, not after a time, so that the hash is the same on a slow machine.
 
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{Record, RunPlan, World, run};
+use halfgap::{Record, Remedy, RemedyCounts, RemedySet, RunPlan, World, WorldBuilder, run};
 use halfgap_tests::generate::{coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed};
 use halfgap_tests::{data, reference_scene_names};
 use serde_json::Value;
@@ -31,13 +33,22 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let place = arguments.iter().position(|argument| argument == "--count");
     let count = place.map_or(1000, |place| arguments[place + 1].parse().expect("a number follows --count"));
+    let without = arguments.iter().position(|argument| argument == "--without");
+    let without = without.map_or(RemedySet::NONE, |place| {
+        let name = arguments.get(place + 1).expect("a name follows --without");
+        let remedy = Remedy::ALL.into_iter().find(|remedy| remedy.name() == name);
+        RemedySet::NONE.with(remedy.expect("a remedy has that name"))
+    });
+    let prints_remedies = arguments.iter().any(|argument| argument == "--remedies");
     let prints_each = arguments.iter().any(|argument| argument == "--each");
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     let mut files: Vec<_> = std::fs::read_dir(scenes).expect("the scenes are there").flatten().collect();
     files.sort_by_key(std::fs::DirEntry::path);
-    let of_repository = hashes(files.len(), &|index| Scene::read(files[index].path()).expect("a fine scene"));
+    let outcomes = |count: usize, scene: &(dyn Fn(usize) -> Scene + Sync)| outcomes(count, scene, without);
+    let of_repository =
+        outcomes(files.len(), &|index| Scene::read(files[index].path()).expect("a fine scene"));
     let names = reference_scene_names();
-    let reference = hashes(names.len(), &|index| {
+    let reference = outcomes(names.len(), &|index| {
         Scene::read(data(&format!("scenes/{}.json", names[index]))).expect("a fine scene")
     });
     let mut groups = vec![("repository", of_repository), ("reference", reference)];
@@ -49,9 +60,14 @@ fn main() {
     ];
     for (kind, of_seed) in kinds {
         let scene = |index| Scene::parse(&of_seed(1 + index as u64).to_string(), SceneFormat::Json);
-        groups.push((kind, hashes(count, &|index| scene(index).expect("a generated scene can be read"))));
+        groups.push((kind, outcomes(count, &|index| scene(index).expect("a generated scene can be read"))));
     }
-    for (kind, hashes) in groups {
+    if prints_remedies {
+        print_remedies(&groups);
+        return;
+    }
+    for (kind, outcomes) in groups {
+        let hashes: Vec<u64> = outcomes.iter().map(|outcome| outcome.hash).collect();
         if prints_each {
             for (index, hash) in hashes.iter().enumerate() {
                 println!("{kind} {} {hash:016x}", index + 1);
@@ -63,17 +79,38 @@ fn main() {
     }
 }
 
-/// The hashes of so many scenes, by their number.
-fn hashes(count: usize, scene: &(dyn Fn(usize) -> Scene + Sync)) -> Vec<u64> {
-    let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![0; count]));
+/// What became of a scene.
+#[derive(Clone, Copy, Default)]
+struct Outcome {
+    hash: u64,
+    remedies: RemedyCounts,
+}
+
+/// Prints, for each remedy and each group of scenes, in how many scenes it acted.
+fn print_remedies(groups: &[(&str, Vec<Outcome>)]) {
+    let titles = groups.iter().map(|(kind, outcomes)| format!("{kind} ({})", outcomes.len()));
+    println!("| remedy | {} |", titles.collect::<Vec<_>>().join(" | "));
+    println!("|---|{}", "---:|".repeat(groups.len()));
+    for remedy in Remedy::ALL {
+        let acted = groups.iter().map(|(_, outcomes)| {
+            let acted = outcomes.iter().filter(|outcome| outcome.remedies.of(remedy) > 0);
+            acted.count().to_string()
+        });
+        println!("| `{}` | {} |", remedy.name(), acted.collect::<Vec<_>>().join(" | "));
+    }
+}
+
+/// What becomes of so many scenes, by their number.
+fn outcomes(count: usize, scene: &(dyn Fn(usize) -> Scene + Sync), without: RemedySet) -> Vec<Outcome> {
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![Outcome::default(); count]));
     let work = || {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             if index >= count {
                 return;
             }
-            let hash = hash_of(&scene(index));
-            found.lock().expect("no thread panics")[index] = hash;
+            let outcome = outcome_of(&scene(index), without);
+            found.lock().expect("no thread panics")[index] = outcome;
         }
     };
     std::thread::scope(|scope| (0..JOBS).for_each(|_| drop(scope.spawn(work))));
@@ -81,9 +118,14 @@ fn hashes(count: usize, scene: &(dyn Fn(usize) -> Scene + Sync)) -> Vec<u64> {
 }
 
 /// The hash of all that a run records, of the error that it ends with, or of that which refuses the scene.
-fn hash_of(scene: &Scene) -> u64 {
-    let mut hash = Hash::new();
-    let world = World::from_scene(scene);
+fn outcome_of(scene: &Scene, without: RemedySet) -> Outcome {
+    let (mut hash, mut remedies) = (Hash::new(), RemedyCounts::default());
+    // An error is written as that of the scene, which names the field.
+    let refused = || World::from_scene(scene).map_or_else(|error| error.to_string(), |_| String::new());
+    let world = WorldBuilder::from_scene(scene).map_err(|_| refused()).and_then(|mut builder| {
+        builder.settings_mut().without = without;
+        builder.build().map_err(|_| refused())
+    });
     let written = match world {
         Ok(mut world) => {
             let mut reports = 0;
@@ -91,12 +133,13 @@ fn hash_of(scene: &Scene) -> u64 {
                 reports += 1;
                 if reports < LONGEST { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
             });
+            remedies = world.statistics().remedies;
             write!(hash, "{:?} {:?} {:?}", report.recording, report.error, report.findings)
         }
         Err(error) => write!(hash, "{error}"),
     };
     written.expect("hashing never fails");
-    hash.0
+    Outcome { hash: hash.0, remedies }
 }
 
 /// FNV-1a of 64 bits. Numbers are written with all the digits that tell them apart.

@@ -42,7 +42,7 @@ pub struct GapKinematics {
 
 /// Linear and angular acceleration of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spin {
+pub struct BodyAcceleration {
     /// Acceleration of the centre of mass [m/s^2].
     pub linear: DVec2,
     /// Angular acceleration [rad/s^2].
@@ -80,7 +80,7 @@ impl GapKinematics {
     /// Acceleration of the gap [m/s^2] for given accelerations of the bodies.
     #[must_use]
     #[inline]
-    pub fn acceleration(&self, primary: &Spin, normal: &Spin) -> f64 {
+    pub fn acceleration(&self, primary: &BodyAcceleration, normal: &BodyAcceleration) -> f64 {
         let j = &self.jacobian;
         j[0] * primary.linear.x
             + j[1] * primary.linear.y

@@ -75,7 +75,7 @@ pub use first_contact::{
 };
 pub use flight::Flight;
 pub use halfgap_geometry as geometry;
-pub use kinematics::{Arms, GapKinematics, Spin};
+pub use kinematics::{Arms, BodyAcceleration, GapKinematics};
 pub use merge::{is_same_collision, merge_collisions};
 pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
 pub use quadratic::first_closing_time;

@@ -99,7 +99,7 @@ impl World {
         }
         let has_failed = self.system.failure().is_some();
         let until = Time::from_seconds(time);
-        self.system.set_duration(self.sentry.duration.max(time - self.time()));
+        self.system.set_duration(self.monitor.duration.max(time - self.time()));
         if self.tell_first_impact(on_event).is_break() {
             return self.conclude(Ok(ControlFlow::Break(())), self.system.now());
         }
@@ -140,7 +140,7 @@ impl World {
         }
     }
 
-    /// Notes how far the system has come, and lets the sentry check it.
+    /// Notes how far the system has come, and lets the monitor check it.
     pub(crate) fn conclude(
         &mut self,
         outcome: Result<ControlFlow<()>, AdvanceError>,

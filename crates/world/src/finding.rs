@@ -4,10 +4,10 @@
 //! without knowing the answer, now and then and at the end of every run. So can what its author hardly meant
 //! (`unmeant`).
 
+use crate::invariant_monitor::InvariantMonitor;
 use crate::ledger::Books;
 use crate::near::NearPairs;
 use crate::overlap::overlap_depth;
-use crate::sentry::Sentry;
 use crate::world::World;
 use crate::world_error::ConnectorName;
 use glam::DVec2;
@@ -182,9 +182,9 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// Checks whether connectors are together and bodies apart, unless the sentry has just found that they are.
+    /// Checks whether connectors are together and bodies apart, unless the monitor has just found that they are.
     pub(crate) fn look(&mut self, world: &World) {
-        if world.sentry.is_sound {
+        if world.monitor.is_sound {
             return;
         }
         let mut found = Vec::new();
@@ -325,7 +325,7 @@ impl World {
         let share = if self.keeps_to_tolerance() { of_steps } else { PLAINLY };
         // Errors of steps and rounding are relative to the usual energy; where nothing moves or falls, to that of
         // motion by rounding.
-        let scales = &self.sentry.scales;
+        let scales = &self.monitor.scales;
         let least = SELDOM * scales.usual;
         let is_told = |energy: &f64| {
             let is_much = exceeds(*energy, books, turned_over.max(least), share);
@@ -338,7 +338,7 @@ impl World {
         let is_blow = |energy: &f64| exceeds(*energy, books, turned_over.max(least), CAPTURED);
         let projected = Some(books.projections.abs()).filter(|energy| {
             let puts_back = self.rigid_settings().impulse_step.is_some();
-            !puts_back && is_told(energy) && (!self.sentry.slow_is_given || is_blow(energy))
+            !puts_back && is_told(energy) && (!self.monitor.slow_is_given || is_blow(energy))
         });
         findings.extend(projected.map(|energy| Finding::Projected { energy, turned_over }));
         if scales.usual > 0.0 {
@@ -349,10 +349,10 @@ impl World {
     }
 
     /// Returns a finding if the books are open by far more than [`World::findings`] reports, or captures have taken a
-    /// large part of the energy. A sentry that looks seldom does not see all of the energy in play: it takes it for at
+    /// large part of the energy. A monitor that looks seldom does not see all of the energy in play: it takes it for at
     /// least a fraction of the usual energy of the scene.
     pub(crate) fn books_astray(&self, books: &Books, turned_over: f64) -> Option<Finding> {
-        let Sentry { scales, is_watchful, .. } = &self.sentry;
+        let InvariantMonitor { scales, is_watchful, .. } = &self.monitor;
         if scales.usual == 0.0 {
             // Nothing moves or falls: all energy is rounding.
             return None;
@@ -384,7 +384,7 @@ impl World {
     /// True if captures are wanted whatever they take: the caller has given the speed that counts as slow, or the
     /// target gap, within which bounces come to rest, or contacts carry impulses only.
     fn is_slow_asked_for(&self) -> bool {
-        let Sentry { slow_is_given, gap_is_given, .. } = self.sentry;
+        let InvariantMonitor { slow_is_given, gap_is_given, .. } = self.monitor;
         slow_is_given || gap_is_given || self.rigid_settings().impulse_step.is_some()
     }
 

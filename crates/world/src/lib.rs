@@ -45,6 +45,7 @@ mod finding;
 pub mod force;
 mod force_change;
 mod intervention;
+mod invariant_monitor;
 mod ledger;
 #[cfg(feature = "scene")]
 mod names;
@@ -63,7 +64,6 @@ mod run;
 mod run_error;
 #[cfg(feature = "scene")]
 pub mod scene;
-mod sentry;
 mod settings;
 mod start;
 mod unmeant;

@@ -17,7 +17,7 @@ pub(crate) fn rigid_settings(
     let method = method(settings.integrator);
     let derived = RigidSettings::with_tolerances(settings.tolerance, tolerances, scales, method);
     RigidSettings {
-        law: settings.impact_law,
+        impact_law: settings.impact_law,
         order: settings.impact_order,
         collisions: settings.collisions,
         search: SearchSettings { depth: sinking(settings, &tolerances, scales), ..derived.search },

@@ -2,11 +2,11 @@
 
 use crate::event::{Event, Impact};
 use crate::finding::{Finding, Findings};
+use crate::invariant_monitor::LOOKS;
 use crate::ledger::{Books, Turnover};
 use crate::recording::{ContactChange, ContactRecord, Frame, Recording};
 use crate::run_error::RunError;
 use crate::scene::Scene;
-use crate::sentry::LOOKS;
 use crate::world::{Energy, World};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -184,7 +184,7 @@ pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunRepo
         if error.is_some() || wanted || target == plan.end_time {
             push_new(&mut recording, world);
         }
-        // The sentry checks as often, but not where steps of a given length may err by any amount.
+        // The monitor checks as often, but not where steps of a given length may err by any amount.
         if wanted && done(now, plan) >= looks / LOOKS {
             findings.look(world);
             looks += 1.0;

@@ -2,8 +2,8 @@
 
 use crate::event::{ContactForce, Event, Impact};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
+use crate::invariant_monitor::InvariantMonitor;
 use crate::ledger::{Books, LawWork, Ledger, Turnover};
-use crate::sentry::Sentry;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RigidSystem, RowForce};
@@ -95,7 +95,7 @@ pub struct World {
     pub(crate) told: Event,
     /// Whether bodies that closed at the start were stopped by an impact that has not been reported yet.
     pub(crate) owes_first_impact: bool,
-    pub(crate) sentry: Sentry,
+    pub(crate) monitor: InvariantMonitor,
 }
 
 /// Corrections of the bodies before the start.
@@ -117,17 +117,17 @@ pub(crate) struct WorldParts {
     pub(crate) now: Time,
     pub(crate) warnings: Vec<String>,
     pub(crate) start: Start,
-    pub(crate) sentry: Sentry,
+    pub(crate) monitor: InvariantMonitor,
 }
 
 impl World {
     pub(crate) fn new(parts: WorldParts) -> Self {
-        let WorldParts { system, bodies, connectors, now, warnings, start, sentry } = parts;
+        let WorldParts { system, bodies, connectors, now, warnings, start, monitor } = parts;
         let told = Event::Impact(Impact::default());
         let owes_first_impact = system.counts().impacts > 0;
         let mut world =
-            Self { system, bodies, connectors, now, warnings, start, told, owes_first_impact, sentry };
-        world.sentry.turnover = Turnover::new(world.energy());
+            Self { system, bodies, connectors, now, warnings, start, told, owes_first_impact, monitor };
+        world.monitor.turnover = Turnover::new(world.energy());
         world
     }
 
@@ -178,7 +178,7 @@ impl World {
     /// If the world has no such body, and for the background.
     #[must_use]
     pub fn shape(&self, body: BodyId) -> &Shape {
-        &self.system.flyer(body).body().shape
+        &self.system.trajectory(body).body().shape
     }
 
     /// Centre of mass of a body [m], in the coordinates in which its shape was given.
@@ -205,7 +205,7 @@ impl World {
     /// If the world has no such body.
     #[must_use]
     pub fn state(&self, body: BodyId) -> BodyState {
-        if body.is_world() { BodyState::default() } else { self.system.flyer(body).state_at(self.now) }
+        if body.is_world() { BodyState::default() } else { self.system.trajectory(body).state_at(self.now) }
     }
 
     /// Kinetic and potential energy at the present time.
@@ -311,7 +311,7 @@ impl World {
 
     /// Relative accuracy asked for [-].
     pub(crate) fn tolerance(&self) -> f64 {
-        self.sentry.tolerance
+        self.monitor.tolerance
     }
 
     /// Distance [m] by which two slow bodies may sink into each other before they are put back; 0 where contacts carry

@@ -7,7 +7,7 @@ use halfgap_tests::mechanism::{Workshop, advance, block, connector_error, disc};
 
 const WORLD: BodyId = BodyId::WORLD;
 const TOLERANCES: [f64; 4] = [1e-4, 1e-6, 1e-8, 1e-10];
-/// Spin [rad/s] of the mechanisms at first, and duration [s] of the runs.
+/// BodyAcceleration [rad/s] of the mechanisms at first, and duration [s] of the runs.
 const SPIN: f64 = 3.0;
 const DURATION: f64 = 2.0;
 

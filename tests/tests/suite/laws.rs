@@ -153,7 +153,7 @@ fn a_free_body_does_not_step_over_a_force_whose_length_is_told() {
 
 #[test]
 fn a_spiral_spring_is_wound_up_by_turns() {
-    /// Spin of the wheel [rad/s] as its spring is relaxed: it turns by three turns to either side.
+    /// BodyAcceleration of the wheel [rad/s] as its spring is relaxed: it turns by three turns to either side.
     const SPIN: f64 = 20.0;
     const TOLERANCE: f64 = 1e-9;
     for (is_pinned, has_potential) in [(false, true), (false, false), (true, true), (true, false)] {

@@ -48,9 +48,9 @@ mod test_scene;
 mod watch;
 mod zeno;
 
-pub use bodies::flyer::{FlightLaw, Flyer};
 pub use bodies::law::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use bodies::squeezed::LARGEST_MASS_RATIO;
+pub use bodies::trajectory::{FreeMotion, Trajectory};
 pub use books::counts::Counts;
 pub use books::ledger::Ledger;
 pub use books::report::{ContactChanges, Handled, ImpactReport, RowForce, RowReport};

@@ -1,7 +1,7 @@
 //! The parts of a system, and the checks that refuse missing bodies and numbers out of range.
 
-use crate::rigid::bodies::flyer::FlightLaw;
 use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::bodies::trajectory::FreeMotion;
 use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
 use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
@@ -26,7 +26,7 @@ pub struct BodyPart {
     /// Shape, inverse mass [1/kg], inverse moment of inertia [1/(kg m^2)] and elasticity [-].
     pub body: Body,
     /// Uniform acceleration [m/s^2] and damping rates [1/s] in free flight; ignored for a fixed body.
-    pub law: FlightLaw,
+    pub free_motion: FreeMotion,
     /// Position [m] of the centre of mass, angle [rad], velocity [m/s] and angular velocity [rad/s] at the start, in the
     /// world frame; both velocities are ignored for a fixed body.
     pub state: BodyState,
@@ -176,7 +176,7 @@ fn check_zone(&Tolerances { target_gap, accuracy, .. }: &Tolerances) -> Result<(
     keep_to(&[(POSITIVE.0, POSITIVE.1, &sizes)]).map_err(bad)
 }
 
-fn check_body(BodyPart { body, law, state }: &BodyPart) -> Result<(), Broken> {
+fn check_body(BodyPart { body, free_motion: law, state }: &BodyPart) -> Result<(), Broken> {
     let sizes = [
         ("inverse mass", body.inverse_mass),
         ("inverse moment", body.inverse_moment),
@@ -232,7 +232,7 @@ mod tests {
     fn disc() -> BodyPart {
         let shape = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
-        BodyPart { body, law: FlightLaw::default(), state: BodyState::default() }
+        BodyPart { body, free_motion: FreeMotion::default(), state: BodyState::default() }
     }
 
     /// The error message for a system of one disc after a change of its parts or settings.

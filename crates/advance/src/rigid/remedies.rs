@@ -10,9 +10,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[non_exhaustive]
 pub enum Remedy {
     /// Corners that pass over each other where two surfaces are flush are left out of the search and of events.
-    CornersPassOver,
+    GhostCorners,
     /// Features and ropes that turn back by themselves before they touch, near a dead point of a mechanism, are let come nearer.
-    Grazing,
+    DeadPoints,
     /// The search leaves out the corners at the ends of the edges of a held contact.
     EndsLeftAlone,
     /// Contacts that lie deep keep the gaps at which they fire through events of other bodies.
@@ -22,7 +22,7 @@ pub enum Remedy {
     /// Contacts that fire again and again at one time fire at a lower gap, by more each time.
     Insistence,
     /// A body that slides along below its target gap fires later elsewhere, so that it does not run against seams.
-    Halos,
+    TriggerGaps,
     /// A contact that has fired although it did not close may sink as one at rest.
     OpenFiring,
     /// Corners that pass each other before they come to their target do not take part in an event.
@@ -88,13 +88,13 @@ pub enum Remedy {
 impl Remedy {
     /// All remedies, in the order of their declaration.
     pub const ALL: [Self; 37] = [
-        Self::CornersPassOver,
-        Self::Grazing,
+        Self::GhostCorners,
+        Self::DeadPoints,
         Self::EndsLeftAlone,
         Self::DeepRulesKept,
         Self::DeepReturn,
         Self::Insistence,
-        Self::Halos,
+        Self::TriggerGaps,
         Self::OpenFiring,
         Self::PassingBy,
         Self::LowBounces,
@@ -131,13 +131,13 @@ impl Remedy {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::CornersPassOver => "corners_pass_over",
-            Self::Grazing => "grazing",
+            Self::GhostCorners => "ghost_corners",
+            Self::DeadPoints => "dead_points",
             Self::EndsLeftAlone => "ends_left_alone",
             Self::DeepRulesKept => "deep_rules_kept",
             Self::DeepReturn => "deep_return",
             Self::Insistence => "insistence",
-            Self::Halos => "halos",
+            Self::TriggerGaps => "trigger_gaps",
             Self::OpenFiring => "open_firing",
             Self::PassingBy => "passing_by",
             Self::LowBounces => "low_bounces",

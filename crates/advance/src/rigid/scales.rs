@@ -131,7 +131,7 @@ impl RigidSettings {
         let rest_speed = rest_speed(tolerances.velocity_tol, speed);
         Self {
             tolerances,
-            law: ImpactLaw::default(),
+            impact_law: ImpactLaw::default(),
             order: ImpactOrder::default(),
             collisions: true,
             search: SearchSettings { rest: rest_speed, ..SearchSettings::default() },

@@ -11,7 +11,7 @@ pub struct RigidSettings {
     /// Thresholds of touching.
     pub tolerances: Tolerances,
     /// Impact law.
-    pub law: ImpactLaw,
+    pub impact_law: ImpactLaw,
     /// Order in which serial impact laws take the rows.
     pub order: ImpactOrder,
     /// True if bodies collide; false if they pass through each other.

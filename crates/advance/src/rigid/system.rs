@@ -4,8 +4,8 @@
 //! segment ends, sunk contacts are put back. Between events nothing is computed; an event touches only its bodies and
 //! their neighbours.
 
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::counts::Counts;
 use crate::rigid::books::forces::row_forces;
 use crate::rigid::books::ledger::Ledger;
@@ -71,8 +71,8 @@ impl RigidSystem {
     /// If there is no such body.
     #[must_use]
     #[inline]
-    pub fn flyer(&self, body: BodyId) -> &Flyer {
-        self.rooms.assembly.flyer(body)
+    pub fn trajectory(&self, body: BodyId) -> &Trajectory {
+        self.rooms.assembly.trajectory(body)
     }
 
     /// Counts and extremes of the system since its start.

@@ -1,7 +1,7 @@
 //! Settings and bodies for tests of groups: discs and a block on a floor.
 
 use crate::ode::Method;
-use crate::rigid::bodies::flyer::FlightLaw;
+use crate::rigid::bodies::trajectory::FreeMotion;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::state::Group;
 use crate::rigid::parts::{BodyPart, RigidParts};
@@ -42,7 +42,7 @@ const DISCS_SOON: f64 = 1e-4;
 
 /// Settings with thresholds far below anything that happens.
 pub(crate) const FINE: RigidSettings = RigidSettings {
-    law: ImpactLaw::Hybrid,
+    impact_law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
     method: Method::Dop853,
     search: SearchSettings::STANDARD,
@@ -107,11 +107,11 @@ fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> Rooms {
         elasticity: 0.0,
     };
     let below = BodyState { position: DVec2::new(0.0, -0.5), ..BodyState::default() };
-    let mut bodies = vec![BodyPart { body: floor, law: FlightLaw::default(), state: below }];
+    let mut bodies = vec![BodyPart { body: floor, free_motion: FreeMotion::default(), state: below }];
     bodies.extend(placed.map(|(shape, state)| {
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
-        let law = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
-        BodyPart { body, law, state }
+        let law = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
+        BodyPart { body, free_motion: law, state }
     }));
     rooms_of(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
 }

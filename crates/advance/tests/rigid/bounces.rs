@@ -17,7 +17,7 @@ fn ball(elasticity: f64) -> RigidSystem {
     let height = DROP + 0.5 + TOLERANCES.target_gap;
     let mut ball = body(&disc(0.5), moving(DVec2::new(0.0, height), DVec2::ZERO, 0.0));
     ball.body.elasticity = elasticity;
-    ball.law.acceleration = DVec2::new(0.0, -GRAVITY);
+    ball.free_motion.acceleration = DVec2::new(0.0, -GRAVITY);
     let bodies = vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), ball];
     let settings = RigidSettings { tolerances, ..SETTINGS };
     RigidSystem::new(RigidParts { bodies, ..RigidParts::default() }, settings, Time::ZERO)

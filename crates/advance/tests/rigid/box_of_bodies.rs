@@ -3,7 +3,7 @@
 use glam::DVec2;
 use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{
-    AdvanceError, BodyPart, FlightLaw, RigidParts, RigidSettings, RigidSystem, StepControl,
+    AdvanceError, BodyPart, FreeMotion, RigidParts, RigidSettings, RigidSystem, StepControl,
 };
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings, Tolerances};
@@ -15,7 +15,7 @@ pub(crate) const TOLERANCES: Tolerances =
 
 pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     tolerances: TOLERANCES,
-    law: ImpactLaw::Hybrid,
+    impact_law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
     collisions: true,
     search: SearchSettings::STANDARD,
@@ -60,12 +60,16 @@ pub(crate) fn body(shape: &Shape, state: BodyState) -> BodyPart {
         inverse_moment: 1.0 / (mass.area * mass.moment_per_mass),
         elasticity: 1.0,
     };
-    BodyPart { body, law: FlightLaw::default(), state }
+    BodyPart { body, free_motion: FreeMotion::default(), state }
 }
 
 pub(crate) fn fixed(shape: &Shape, position: DVec2) -> BodyPart {
     let body = Body { shape: shape.clone(), inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 1.0 };
-    BodyPart { body, law: FlightLaw::default(), state: BodyState { position, ..BodyState::default() } }
+    BodyPart {
+        body,
+        free_motion: FreeMotion::default(),
+        state: BodyState { position, ..BodyState::default() },
+    }
 }
 
 pub(crate) fn disc(radius: f64) -> Shape {
@@ -132,13 +136,13 @@ pub(crate) fn bodies(system: &RigidSystem) -> impl Iterator<Item = BodyId> + use
 }
 
 pub(crate) fn states(system: &RigidSystem, time: f64) -> Vec<BodyState> {
-    bodies(system).map(|body| system.flyer(body).state_at(Time::from_seconds(time))).collect()
+    bodies(system).map(|body| system.trajectory(body).state_at(Time::from_seconds(time))).collect()
 }
 
 pub(crate) fn energy(system: &RigidSystem, time: f64) -> f64 {
     let of = |body: BodyId| {
-        let flyer = system.flyer(body);
-        let (state, inertia) = (flyer.state_at(Time::from_seconds(time)), flyer.body());
+        let trajectory = system.trajectory(body);
+        let (state, inertia) = (trajectory.state_at(Time::from_seconds(time)), trajectory.body());
         if inertia.is_fixed() {
             return 0.0;
         }
@@ -154,7 +158,7 @@ pub(crate) fn least_distance(system: &RigidSystem, time: f64) -> (f64, [BodyId; 
     let mut least = (f64::INFINITY, [BodyId(0); 2]);
     for a in bodies(system) {
         for b in bodies(system).filter(|&b| b > a) {
-            let (body_a, body_b) = (system.flyer(a).body(), system.flyer(b).body());
+            let (body_a, body_b) = (system.trajectory(a).body(), system.trajectory(b).body());
             let (state_a, state_b) = (&states[a.index()], &states[b.index()]);
             let apart =
                 (state_a.position - state_b.position).length() - body_a.shape.reach() - body_b.shape.reach();

@@ -61,12 +61,12 @@ fn a_rope_that_is_nearly_taut_is_held_where_it_is() {
     for (a, b) in [(0.0, 0.0), (0.0, 0.01)] {
         let hung = moving(DVec2::new(0.0, -1.0 - b + slack), DVec2::ZERO, 0.0);
         let mut disc = body(&disc(0.5), hung);
-        disc.law.acceleration = DVec2::new(0.0, -10.0);
+        disc.free_motion.acceleration = DVec2::new(0.0, -10.0);
         let rope = ConnectorKind::Rope { a: anchor(BodyId::WORLD, a), b: anchor(BodyId(0), b), length: 1.0 };
         let connectors = vec![Connector::new(rope, 0.0).expect("a fine rope")];
         let parts = RigidParts { bodies: vec![disc], connectors, ..RigidParts::default() };
         let system = system_of(parts, Time::ZERO);
         assert_eq!(system.row_forces(Time::ZERO).len(), 1, "it hangs on it");
-        assert_eq!(system.flyer(BodyId(0)).state_at(Time::ZERO), hung);
+        assert_eq!(system.trajectory(BodyId(0)).state_at(Time::ZERO), hung);
     }
 }

@@ -24,7 +24,7 @@ fn kicked(gravity: f64, upward: f64) -> RigidSystem {
 fn kicked_where_fast_is(velocity_tol: f64, gravity: f64, upward: f64) -> RigidSystem {
     let height = RADII[0] + TOLERANCES.target_gap;
     let mut resting = body(&disc(RADII[0]), moving(DVec2::new(0.0, height), DVec2::ZERO, 0.0));
-    resting.law.acceleration = DVec2::new(0.0, -gravity);
+    resting.free_motion.acceleration = DVec2::new(0.0, -gravity);
     let lower = (RADII[0] + RADII[1]) * upward / KICK;
     let place = DVec2::new(-1.8, height - lower);
     let mut kicking = body(&disc(RADII[1]), moving(place, DVec2::new(KICK, 0.0), 0.0));
@@ -57,7 +57,7 @@ fn a_short_hop_within_the_target_zone_is_held_from_the_kick_on() {
     let system = kicked(10.0, upward);
     assert_eq!(impacts(&system), 1);
     // The energy that the hop would have lost at its landing is lost at once.
-    let lost = 0.5 * upward * upward / system.flyer(halfgap_collision::BodyId(1)).body().inverse_mass;
+    let lost = 0.5 * upward * upward / system.trajectory(halfgap_collision::BodyId(1)).body().inverse_mass;
     let captures = system.ledger_at(Time::from_seconds(END)).captures;
     assert!((captures / -lost - 1.0).abs() < 1e-6, "{captures} J of {lost} J");
 }

@@ -19,7 +19,7 @@ fn swinging(discs: usize, ties: &[fn(Anchor, Anchor) -> ConnectorKind]) -> Rigid
     let parts = (0..discs).map(|index| {
         let state = BodyState { position: hangs(index) + arm, ..BodyState::default() };
         let mut part = body(&disc(0.5), state);
-        part.law.acceleration = DVec2::new(0.0, -10.0);
+        part.free_motion.acceleration = DVec2::new(0.0, -10.0);
         part
     });
     let connectors = (0..discs).flat_map(|index| {

@@ -11,7 +11,7 @@ fn a_damped_disc_coasts_into_a_wall_when_the_exponential_says() {
     // x(t) = v (1 - e^(-k t))/k: the gap of 1 m less the target gap is gone at t = -ln(1 - k s/v)/k.
     let (speed, rate) = (2.0, 0.5);
     let mut disc = body(&disc(0.5), moving(DVec2::ZERO, DVec2::new(speed, 0.0), 0.0));
-    disc.law.linear_rate = rate;
+    disc.free_motion.linear_rate = rate;
     let mut system = system(vec![disc, fixed(&block(1.0, 4.0), DVec2::new(2.0, 0.0))]);
     let way = 1.0 - TOLERANCES.target_gap;
     let impact = -(1.0 - rate * way / speed).ln() / rate;
@@ -26,7 +26,7 @@ fn a_damped_disc_coasts_into_a_wall_when_the_exponential_says() {
 #[test]
 fn a_disc_thrown_short_of_a_wall_by_damping_never_arrives() {
     let mut disc = body(&disc(0.5), moving(DVec2::ZERO, DVec2::new(1.0, 0.0), 0.0));
-    disc.law.linear_rate = 1.0;
+    disc.free_motion.linear_rate = 1.0;
     let mut system = system(vec![disc, fixed(&block(1.0, 4.0), DVec2::new(2.001, 0.0))]);
     advance(&mut system, 1e3).expect("nothing happens");
     assert_eq!(system.counts().impacts, 0);

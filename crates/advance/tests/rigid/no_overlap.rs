@@ -70,9 +70,9 @@ fn nothing_tunnels_while_all_are_pulled_and_damped() {
     let mut parts = crowd(&mixed_shapes(), 2.0, &mut Random(9));
     for (index, part) in parts.iter_mut().enumerate() {
         // Each body is pulled in a direction of its own, so that pairs accelerate against each other.
-        part.law.acceleration = DVec2::from_angle(index as f64) * 0.5;
-        part.law.linear_rate = 0.02 * (index % 3) as f64;
-        part.law.angular_rate = 0.03 * (index % 2) as f64;
+        part.free_motion.acceleration = DVec2::from_angle(index as f64) * 0.5;
+        part.free_motion.linear_rate = 0.02 * (index % 3) as f64;
+        part.free_motion.angular_rate = 0.03 * (index % 2) as f64;
     }
     watch(&mut system(parts), 5.0, 800);
 }

@@ -12,7 +12,7 @@ const GRAVITY: f64 = 10.0;
 fn dropped(velocity: DVec2) -> (RigidSystem, f64) {
     let mut ball = body(&disc(0.5), moving(DVec2::new(0.0, 1.5), velocity, 0.0));
     ball.body.elasticity = 0.0;
-    ball.law.acceleration = DVec2::new(0.0, -GRAVITY);
+    ball.free_motion.acceleration = DVec2::new(0.0, -GRAVITY);
     let weight = GRAVITY / ball.body.inverse_mass;
     (system(vec![fixed(&block(10.0, 1.0), DVec2::new(0.0, -0.5)), ball]), weight)
 }

@@ -30,8 +30,8 @@ fn vise(resolution_time: f64, lighter: f64, room: f64, speed: f64) -> RigidSyste
 
 fn momentum(system: &RigidSystem, time: f64) -> f64 {
     let of = |body| {
-        let flyer = system.flyer(body);
-        flyer.state_at(Time::from_seconds(time)).velocity.x / flyer.body().inverse_mass
+        let trajectory = system.trajectory(body);
+        trajectory.state_at(Time::from_seconds(time)).velocity.x / trajectory.body().inverse_mass
     };
     bodies(system).map(of).sum()
 }

@@ -4,7 +4,7 @@ use crate::differences::{first, second};
 use crate::path::{Path, any_path, any_vector};
 use glam::DVec2;
 use halfgap_collision::{
-    Anchor, BodyId, Connector, ConnectorKind, ConnectorSample, Moving, RailPath, SlotFrame, Spin,
+    Anchor, BodyAcceleration, BodyId, Connector, ConnectorKind, ConnectorSample, Moving, RailPath, SlotFrame,
 };
 use halfgap_geometry::{EdgeSpec, Rotation};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ const STILL: Path = Path {
     angle: 0.0,
     velocity: DVec2::ZERO,
     spin: 0.0,
-    push: Spin { linear: DVec2::ZERO, angular: 0.0 },
+    push: BodyAcceleration { linear: DVec2::ZERO, angular: 0.0 },
 };
 
 /// A row of a connector and the paths of its bodies.

@@ -100,7 +100,7 @@ impl Case {
             random.between(-3.0, 3.0)
         };
         let miss = if class == 4 {
-            // Grazing: a passes b with the target gap between their outermost points, or nearly.
+            // DeadPoints: a passes b with the target gap between their outermost points, or nearly.
             let across = |angle: f64, side: f64| DVec2::from_angle(-angle).rotate(heading.perp() * side);
             let widths = shape_a.extent(across(angle_a, -1.0)) + shape_b.extent(across(angle_b, 1.0));
             widths + target + random.one_of(&[-1e-4, -1e-7, -1e-10, -1e-13, 0.0, 1e-13, 1e-9, 1e-6])

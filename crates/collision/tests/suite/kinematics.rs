@@ -3,7 +3,7 @@
 use crate::differences::{first, second};
 use crate::path::{Path, any_path, any_vector};
 use glam::DVec2;
-use halfgap_collision::{Arms, GapKinematics, Spin};
+use halfgap_collision::{Arms, BodyAcceleration, GapKinematics};
 use halfgap_geometry::{DirectionRange, Feature, GapSample, LineFeature, RoundFeature};
 use proptest::prelude::*;
 
@@ -114,7 +114,7 @@ proptest! {
             let [mut primary, mut normal] = case.sides().map(|path| Path {
                 velocity: DVec2::ZERO,
                 spin: 0.0,
-                push: Spin::default(),
+                push: BodyAcceleration::default(),
                 ..path
             });
             let moved = if k < 3 { &mut primary } else { &mut normal };
@@ -149,7 +149,7 @@ proptest! {
         let scale = case.scales()[1].max(1.0);
         prop_assert!((found - difference).abs() <= DIFFERENCE * scale, "{} against {}", found, difference);
         // Without accelerations the acceleration of the gap is gamma.
-        prop_assert_eq!(case.kinematics().acceleration(&Spin::default(), &Spin::default()), case.kinematics().gamma);
+        prop_assert_eq!(case.kinematics().acceleration(&BodyAcceleration::default(), &BodyAcceleration::default()), case.kinematics().gamma);
     }
 
     #[test]
@@ -172,8 +172,13 @@ fn the_differences_are_sharper_than_the_promise() {
 fn a_disc_rolling_inside_a_ring_accelerates_towards_its_wall() {
     // A centre at distance 1 from that of a hollow of radius 2, passing at 3 m/s: the gap closes with u^2/|d|.
     let features = [round(DVec2::ZERO, 0.5), round(DVec2::ZERO, -2.0)];
-    let still =
-        Path { position: DVec2::ZERO, angle: 0.0, velocity: DVec2::ZERO, spin: 0.0, push: Spin::default() };
+    let still = Path {
+        position: DVec2::ZERO,
+        angle: 0.0,
+        velocity: DVec2::ZERO,
+        spin: 0.0,
+        push: BodyAcceleration::default(),
+    };
     let mover = Path { position: DVec2::X, velocity: DVec2::new(0.0, 3.0), spin: 7.0, ..still };
     let kinematics = Case { features, paths: [mover, still] }.kinematics();
     assert_eq!((kinematics.rate, kinematics.gamma), (0.0, -9.0));

@@ -1,7 +1,7 @@
 //! Bodies whose motion is known at any time.
 
 use glam::DVec2;
-use halfgap_collision::{Moving, Spin};
+use halfgap_collision::{BodyAcceleration, Moving};
 use halfgap_geometry::Pose;
 use proptest::prelude::*;
 
@@ -12,7 +12,7 @@ pub(crate) struct Path {
     pub(crate) angle: f64,
     pub(crate) velocity: DVec2,
     pub(crate) spin: f64,
-    pub(crate) push: Spin,
+    pub(crate) push: BodyAcceleration,
 }
 
 impl Path {
@@ -33,7 +33,8 @@ pub(crate) fn any_vector(size: f64) -> impl Strategy<Value = DVec2> {
 }
 
 pub(crate) fn any_path() -> impl Strategy<Value = Path> {
-    let push = (any_vector(2.0), -2.0..2.0f64).prop_map(|(linear, angular)| Spin { linear, angular });
+    let push =
+        (any_vector(2.0), -2.0..2.0f64).prop_map(|(linear, angular)| BodyAcceleration { linear, angular });
     (any_vector(2.0), -3.2..3.2f64, any_vector(1.0), -1.0..1.0f64, push)
         .prop_map(|(position, angle, velocity, spin, push)| Path { position, angle, velocity, spin, push })
 }

@@ -5,7 +5,7 @@ use crate::settings::ToleranceOverrides;
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
-use halfgap_advance::rigid::{FlightLaw, Scales};
+use halfgap_advance::rigid::{FreeMotion, Scales};
 use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, Tolerances};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
@@ -180,7 +180,7 @@ impl WorldBuilder {
 }
 
 /// Refuses gravity that is not finite, and damping that is not finite or negative.
-fn check_flight(body: &BodySpec, law: &FlightLaw) -> Result<(), WorldError> {
+fn check_flight(body: &BodySpec, law: &FreeMotion) -> Result<(), WorldError> {
     let bad =
         |quantity, rule, value| Err(WorldError::BadNumber { body: body.name.clone(), quantity, rule, value });
     if let Some(value) = law.acceleration.to_array().into_iter().find(|value| !value.is_finite()) {

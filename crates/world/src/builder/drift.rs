@@ -4,7 +4,7 @@ use super::BodySpec;
 use crate::connector::ConnectorSpec;
 use crate::force::ForceLaw;
 use glam::DVec2;
-use halfgap_advance::rigid::FlightLaw;
+use halfgap_advance::rigid::FreeMotion;
 use halfgap_collision::BodyId;
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ use std::sync::Arc;
 /// not count: between the bodies they cancel, and those from outside may turn.
 pub(super) fn drift(
     bodies: &[BodySpec],
-    laws: &[FlightLaw],
+    laws: &[FreeMotion],
     (connectors, forces): (&[ConnectorSpec], &[Arc<dyn ForceLaw>]),
     duration: f64,
 ) -> Option<f64> {
     let is_tied = connectors.iter().any(|spec| spec.connector.bodies().contains(&BodyId::WORLD))
         || forces.iter().any(|law| law.bodies().contains(&BodyId::WORLD) || ends_in_world(law.as_ref()))
-        || laws.iter().any(FlightLaw::is_damped);
+        || laws.iter().any(FreeMotion::is_damped);
     if is_tied || bodies.len() < 2 {
         return None;
     }

@@ -7,9 +7,9 @@ mod warnings;
 
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceId, ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
+use crate::invariant_monitor::{EnergyScales, InvariantMonitor};
 use crate::rigid_settings::{rigid_settings, tolerances};
 use crate::run_error::RunError;
-use crate::sentry::{EnergyScales, Sentry};
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartRules, correct_start};
 use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
@@ -19,7 +19,7 @@ use checks::world_bounds;
 use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{BodyPart, FlightLaw, RigidParts, RigidSystem, Scales};
+use halfgap_advance::rigid::{BodyPart, FreeMotion, RigidParts, RigidSystem, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
@@ -108,7 +108,7 @@ impl BodySpec {
 pub struct WorldBuilder {
     settings: WorldSettings,
     bodies: Vec<BodySpec>,
-    laws: Vec<FlightLaw>,
+    laws: Vec<FreeMotion>,
     /// Uniform gravity that acts on all bodies [m/s^2], beside those in `laws`.
     gravity: DVec2,
     forces: Vec<Arc<dyn ForceLaw>>,
@@ -125,10 +125,16 @@ impl WorldBuilder {
         Self { settings, ..Self::default() }
     }
 
+    /// The settings, to change some: those of a scene, say.
+    #[must_use]
+    pub fn settings_mut(&mut self) -> &mut WorldSettings {
+        &mut self.settings
+    }
+
     /// Adds a body and returns its id.
     pub fn add(&mut self, body: BodySpec) -> BodyId {
         self.bodies.push(body);
-        self.laws.push(FlightLaw::default());
+        self.laws.push(FreeMotion::default());
         BodyId::from_index(self.bodies.len() - 1)
     }
 
@@ -253,14 +259,14 @@ impl WorldBuilder {
         let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
         let energies = energy_scales(&bodies, acting, &start, (&self.settings, &tolerances));
-        let sentry = Sentry::new(&self.settings, energies);
+        let monitor = InvariantMonitor::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales, tolerances);
         let parts =
             RigidParts { bodies, connectors: connectors.clone(), laws: self.forces, excluded: self.excluded };
         let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(WorldParts { system, bodies: named, connectors, now, warnings, start, sentry }))
+        Ok(World::new(WorldParts { system, bodies: named, connectors, now, warnings, start, monitor }))
     }
 
     /// Sets to 0 the speeds whose squares would underflow.
@@ -467,7 +473,8 @@ fn movable(bodies: &[BodyPart]) -> impl Iterator<Item = &BodyPart> {
 /// Sum of the sizes of the forces [N] on the movable bodies.
 fn forces_on(bodies: &[BodyPart], wrenches: &[Wrench]) -> f64 {
     let movable = bodies.iter().zip(wrenches).filter(|(part, _)| !part.body.is_fixed());
-    let forces = movable.map(|(part, wrench)| wrench.force + part.law.acceleration / part.body.inverse_mass);
+    let forces =
+        movable.map(|(part, wrench)| wrench.force + part.free_motion.acceleration / part.body.inverse_mass);
     forces.map(|force| force.length()).sum()
 }
 
@@ -512,7 +519,7 @@ fn centered(body: &BodySpec) -> Shape {
 }
 
 /// Splits the specification of a body into the data that the world keeps and the part for the system.
-fn into_part((spec, law): (BodySpec, FlightLaw)) -> (Named, BodyPart) {
+fn into_part((spec, law): (BodySpec, FreeMotion)) -> (Named, BodyPart) {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
     let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
     let inverse =
@@ -529,5 +536,5 @@ fn into_part((spec, law): (BodySpec, FlightLaw)) -> (Named, BodyPart) {
     } else {
         BodyState { velocity: DVec2::ZERO, angular_velocity: 0.0, ..spec.state }
     };
-    (named, BodyPart { body, law, state })
+    (named, BodyPart { body, free_motion: law, state })
 }

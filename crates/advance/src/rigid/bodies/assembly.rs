@@ -1,8 +1,8 @@
 //! All bodies at the present time: their trajectories, the laws that act on them, the thresholds by which they are
 //! judged, and every elementary query about one or two of them. It knows no contact.
 
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::laws::Laws;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
@@ -25,7 +25,7 @@ pub(crate) struct Shared {
 #[derive(Clone, Debug)]
 pub(crate) struct Assembly {
     pub(super) settings: RigidSettings,
-    pub(super) flyers: Vec<Flyer>,
+    pub(super) trajectories: Vec<Trajectory>,
     pub(super) remedies: Remedies,
     /// True for bodies that cannot move.
     pub(super) is_fixed: Vec<bool>,
@@ -53,16 +53,21 @@ const SUNK_BESIDE: f64 = 2.0;
 
 impl Assembly {
     /// The bodies at a time at which none is in a group.
-    pub(crate) fn new(flyers: Vec<Flyer>, laws: Laws, settings: RigidSettings, start: Time) -> Self {
-        let count = flyers.len();
+    pub(crate) fn new(
+        trajectories: Vec<Trajectory>,
+        laws: Laws,
+        settings: RigidSettings,
+        start: Time,
+    ) -> Self {
+        let count = trajectories.len();
         let mut assembly = Self {
             settings,
             remedies: Remedies::new(settings.without),
-            is_fixed: flyers.iter().map(|flyer| flyer.body().is_fixed()).collect(),
+            is_fixed: trajectories.iter().map(|trajectory| trajectory.body().is_fixed()).collect(),
             masses_are_extreme: false,
             is_forceless: laws.all.is_empty()
-                && flyers.iter().all(|flyer| flyer.law().acceleration == DVec2::ZERO),
-            flyers,
+                && trajectories.iter().all(|trajectory| trajectory.free_motion().acceleration == DVec2::ZERO),
+            trajectories,
             laws,
             start,
             now: start,
@@ -77,7 +82,7 @@ impl Assembly {
 
     /// Number of bodies.
     pub(crate) fn body_count(&self) -> usize {
-        self.flyers.len()
+        self.trajectories.len()
     }
 
     /// The remedies.
@@ -88,19 +93,19 @@ impl Assembly {
 
     /// The ids of all bodies.
     pub(crate) fn bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
-        (0..u32::try_from(self.flyers.len()).unwrap_or(u32::MAX)).map(BodyId)
+        (0..u32::try_from(self.trajectories.len()).unwrap_or(u32::MAX)).map(BodyId)
     }
 
     /// A body with its present segment.
     #[inline]
-    pub(crate) fn flyer(&self, body: BodyId) -> &Flyer {
-        &self.flyers[body.index()]
+    pub(crate) fn trajectory(&self, body: BodyId) -> &Trajectory {
+        &self.trajectories[body.index()]
     }
 
     /// A body with its present segment, to be moved.
     #[inline]
-    pub(crate) fn flyer_mut(&mut self, body: BodyId) -> &mut Flyer {
-        &mut self.flyers[body.index()]
+    pub(crate) fn trajectory_mut(&mut self, body: BodyId) -> &mut Trajectory {
+        &mut self.trajectories[body.index()]
     }
 
     /// Goes on to a time, or back by a little where an event turns out to come earlier.
@@ -191,10 +196,10 @@ const THIN_SHARE: f64 = 1e-1;
 impl Assembly {
     /// True for a body other than a disc that turns.
     pub(crate) fn turns_about(&self, body: BodyId) -> bool {
-        let flyer = self.flyer(body);
-        !flyer.body().is_fixed()
-            && flyer.disc().is_none()
-            && flyer.moving_at(self.now).angular_velocity != 0.0
+        let trajectory = self.trajectory(body);
+        !trajectory.body().is_fixed()
+            && trajectory.disc().is_none()
+            && trajectory.moving_at(self.now).angular_velocity != 0.0
     }
 }
 
@@ -203,7 +208,7 @@ impl Assembly {
         if body.is_world() {
             return InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
         }
-        let body = self.flyer(body).body();
+        let body = self.trajectory(body).body();
         InverseInertia { inverse_mass: body.inverse_mass, inverse_moment: body.inverse_moment }
     }
 }
@@ -211,7 +216,7 @@ impl Assembly {
 impl Assembly {
     /// Motion of a body at a time of its present segment; the background rests.
     pub(crate) fn moving_at(&self, body: BodyId, time: Time) -> Moving {
-        if body.is_world() { Moving::BACKGROUND } else { self.flyer(body).moving_at(time) }
+        if body.is_world() { Moving::BACKGROUND } else { self.trajectory(body).moving_at(time) }
     }
 }
 
@@ -219,8 +224,8 @@ impl Assembly {
     /// Depth [m] up to which a body that lies in another is told from one that has gone through it.
     pub(crate) fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
         let shares = bodies.map(|body| {
-            let flyer = self.flyer(body);
-            THIN_SHARE * flyer.body().shape.mass_properties().area / flyer.reach()
+            let trajectory = self.trajectory(body);
+            THIN_SHARE * trajectory.body().shape.mass_properties().area / trajectory.reach()
         });
         shares[0].min(shares[1])
     }
@@ -229,13 +234,16 @@ impl Assembly {
 impl Assembly {
     /// Change of energy [J], not positive, by the damping of a body in flight since the start of its segment.
     pub(crate) fn damping_loss(&self, body: BodyId, time: Time) -> f64 {
-        let flyer = self.flyer(body);
-        let Some(start) = flyer.flight_start().filter(|_| flyer.law().is_damped()) else { return 0.0 };
-        let body = flyer.body();
-        let energy = |state: &BodyState| {
-            body.kinetic_energy(state) - flyer.law().acceleration.dot(state.position) / body.inverse_mass
+        let trajectory = self.trajectory(body);
+        let Some(start) = trajectory.flight_start().filter(|_| trajectory.free_motion().is_damped()) else {
+            return 0.0;
         };
-        energy(&flyer.unwound_at(time)) - energy(start)
+        let body = trajectory.body();
+        let energy = |state: &BodyState| {
+            body.kinetic_energy(state)
+                - trajectory.free_motion().acceleration.dot(state.position) / body.inverse_mass
+        };
+        energy(&trajectory.unwound_at(time)) - energy(start)
     }
 }
 
@@ -243,23 +251,23 @@ impl Assembly {
     /// Largest reach [m] of those of two bodies that can move; 0 if neither can.
     pub(crate) fn largest_reach(&self, bodies: [BodyId; 2]) -> f64 {
         let movable = bodies.into_iter().filter(|&body| self.is_movable(body));
-        movable.fold(0.0, |most, body| most.max(self.flyer(body).reach()))
+        movable.fold(0.0, |most, body| most.max(self.trajectory(body).reach()))
     }
 }
 
 impl Assembly {
     /// Kinetic energy [J] of a movable body in a state.
     pub(crate) fn kinetic_energy(&self, body: BodyId, state: &BodyState) -> f64 {
-        self.flyer(body).body().kinetic_energy(state)
+        self.trajectory(body).body().kinetic_energy(state)
     }
 }
 
 impl Assembly {
     // getters of Assembly
-    /// The flyers.
+    /// The trajectories.
     #[inline]
-    pub(crate) fn flyers(&self) -> &[Flyer] {
-        &self.flyers
+    pub(crate) fn trajectories(&self) -> &[Trajectory] {
+        &self.trajectories
     }
 
     /// The laws.

@@ -1,11 +1,11 @@
 //! Force laws: forces and torques on bodies as a function of time and state.
 //!
-//! Uniform acceleration and linear damping are not laws of this kind: they belong to the [`FlightLaw`] of a body, whose
+//! Uniform acceleration and linear damping are not laws of this kind: they belong to the [`FreeMotion`] of a body, whose
 //! motion they leave in closed form. A body on which a [`ForceLaw`] acts is integrated.
 //!
-//! [`FlightLaw`]: crate::rigid::FlightLaw
+//! [`FreeMotion`]: crate::rigid::FreeMotion
 
-use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::trajectory::Trajectory;
 use glam::DVec2;
 use halfgap_collision::{Anchor, BodyId, Moving};
 use std::fmt::Debug;
@@ -18,7 +18,7 @@ pub struct Snapshot<'a> {
     /// Motions of all bodies of the system; only those that the law names are sure to be up to date.
     bodies: &'a [Moving],
     /// The same bodies, which know the whole turns that the angles of the motions lack; empty if they lack none.
-    flyers: &'a [Flyer],
+    trajectories: &'a [Trajectory],
 }
 
 impl<'a> Snapshot<'a> {
@@ -26,12 +26,12 @@ impl<'a> Snapshot<'a> {
     #[must_use]
     #[inline]
     pub fn new(time: f64, bodies: &'a [Moving]) -> Self {
-        Self { time, bodies, flyers: &[] }
+        Self { time, bodies, trajectories: &[] }
     }
 
     /// Makes a snapshot of all bodies of a system, whose motions lack the turns that were taken out of their angles.
-    pub(crate) fn of_unwound(time: f64, bodies: &'a [Moving], flyers: &'a [Flyer]) -> Self {
-        Self { time, bodies, flyers }
+    pub(crate) fn of_unwound(time: f64, bodies: &'a [Moving], trajectories: &'a [Trajectory]) -> Self {
+        Self { time, bodies, trajectories }
     }
 
     /// Returns the pose and the velocities of a body; the background rests at the origin. The angle includes all whole
@@ -46,8 +46,8 @@ impl<'a> Snapshot<'a> {
             return Moving::BACKGROUND;
         }
         let moving = self.bodies[body.index()];
-        match self.flyers.get(body.index()) {
-            Some(flyer) => Moving { angle: flyer.with_turns(moving.angle), ..moving },
+        match self.trajectories.get(body.index()) {
+            Some(trajectory) => Moving { angle: trajectory.with_turns(moving.angle), ..moving },
             None => moving,
         }
     }

@@ -4,16 +4,16 @@
 //! taken out of angles only where a flight starts. The room knows no contact and no connector; of groups it knows who
 //! leads a body, and until when.
 //!
-//! `assembly`: all bodies, what others ask first · `flyer`: one body and its segment · `path`: the motion along it ·
+//! `assembly`: all bodies, what others ask first · `trajectory`: one body and its segment · `path`: the motion along it ·
 //! `thresholds`: what counts as rest, and as deep · `law`, `laws`, `by_body`: force laws and where they act · `squeezed`:
 //! masses too different to be held together · `instant`: when two events are at one time.
 
 pub(super) mod assembly;
 pub(super) mod by_body;
-pub(super) mod flyer;
 pub(super) mod instant;
 pub(super) mod law;
 pub(super) mod laws;
 pub(super) mod path;
 pub(super) mod squeezed;
 pub(super) mod thresholds;
+pub(super) mod trajectory;

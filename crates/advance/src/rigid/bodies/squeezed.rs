@@ -22,8 +22,12 @@ pub(crate) const HOPELESS_MASS_RATIO: f64 = 1e12;
 impl Assembly {
     /// True if some masses are so different that bodies may be squeezed.
     pub(crate) fn has_extreme_masses(&self) -> bool {
-        let masses =
-            || self.flyers.iter().map(|flyer| flyer.body().inverse_mass).filter(|&inverse| inverse > 0.0);
+        let masses = || {
+            self.trajectories
+                .iter()
+                .map(|trajectory| trajectory.body().inverse_mass)
+                .filter(|&inverse| inverse > 0.0)
+        };
         masses().fold(0.0, f64::max) > LARGEST_MASS_RATIO * masses().fold(f64::INFINITY, f64::min)
     }
 

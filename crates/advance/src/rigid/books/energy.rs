@@ -1,7 +1,7 @@
 //! Kinetic energy in the books, and motions that are cut short.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::ImpactReport;
 use crate::rigid::group::stage::body_state;
@@ -11,10 +11,10 @@ use halfgap_collision::BodyId;
 
 /// Books the work of damping on a body in flight, which starts another segment at a time.
 pub(crate) fn book_damping(assembly: &mut Assembly, books: &mut Books, body: BodyId, time: Time) {
-    if assembly.flyer(body).law().is_damped() {
+    if assembly.trajectory(body).free_motion().is_damped() {
         books.ledger.damping += assembly.damping_loss(body, time);
-        let state = assembly.flyer(body).unwound_at(time);
-        assembly.flyer_mut(body).fly_from(time, state);
+        let state = assembly.trajectory(body).unwound_at(time);
+        assembly.trajectory_mut(body).fly_from(time, state);
     }
 }
 
@@ -37,8 +37,12 @@ pub(crate) fn note_kinetic_energy_before(assembly: &Assembly, books: &mut Books,
 }
 
 /// Counts that the segment of a body is cut short, and returns the body.
-pub(crate) fn interrupt<'a>(assembly: &'a mut Assembly, books: &mut Books, body: BodyId) -> &'a mut Flyer {
+pub(crate) fn interrupt<'a>(
+    assembly: &'a mut Assembly,
+    books: &mut Books,
+    body: BodyId,
+) -> &'a mut Trajectory {
     books.counts.segments += 1;
     books.counts.backups += 1;
-    assembly.flyer_mut(body)
+    assembly.trajectory_mut(body)
 }

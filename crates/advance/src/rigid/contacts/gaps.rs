@@ -14,17 +14,17 @@ pub(crate) fn leaves(
     connectors: &Connectors,
     Touch { bodies, features }: Touch,
 ) -> bool {
-    let moving = bodies.map(|body| assembly.flyer(body).moving_at(assembly.now()));
+    let moving = bodies.map(|body| assembly.trajectory(body).moving_at(assembly.now()));
     mechanism(assembly, connectors).has_left(bodies, features, [&moving[0], &moving[1]])
 }
 
 pub(crate) fn features_in(assembly: &Assembly, Touch { bodies, features }: Touch) -> [&Feature; 2] {
-    [0, 1].map(|side: usize| assembly.flyer(bodies[side]).body().shape.feature(features[side]))
+    [0, 1].map(|side: usize| assembly.trajectory(bodies[side]).body().shape.feature(features[side]))
 }
 
 /// Gap [m] and rate [m/s] of two features at a time, also beyond their ends; without end where there is none.
 pub(crate) fn gap_at(assembly: &Assembly, touch: Touch, time: Time) -> (f64, f64) {
-    let moving = touch.bodies.map(|body| assembly.flyer(body).moving_at(time));
+    let moving = touch.bodies.map(|body| assembly.trajectory(body).moving_at(time));
     let [a, b] = features_in(assembly, touch);
     let Some(sample) = GapSample::measure_unbounded(a, &moving[0].pose, b, &moving[1].pose) else {
         return (f64::INFINITY, 0.0);

@@ -1,7 +1,7 @@
 //! The rows that hold bodies together or apart during a segment: contacts and connectors, measured at any moment.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::touch::Touch;
 use crate::time::Time;
@@ -53,7 +53,7 @@ pub(crate) struct RowMoment {
 /// Bodies, connectors and tolerances by which rows are measured.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mechanism<'a> {
-    pub(crate) flyers: &'a [Flyer],
+    pub(crate) trajectories: &'a [Trajectory],
     pub(crate) connectors: &'a [Connector],
     pub(crate) tolerances: &'a Tolerances,
 }
@@ -66,7 +66,7 @@ pub(crate) fn moving_of(movings: &[Moving], body: BodyId) -> &Moving {
 
 impl Mechanism<'_> {
     pub(crate) fn shape(&self, body: BodyId) -> &Shape {
-        &self.flyers[body.index()].body().shape
+        &self.trajectories[body.index()].body().shape
     }
 
     /// A feature of a body.
@@ -219,7 +219,7 @@ pub(crate) fn with_lean(assembly: &Assembly, connectors: &Connectors, row: HeldR
 /// Bodies, connectors and tolerances by which rows are measured.
 pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Mechanism<'a> {
     Mechanism {
-        flyers: assembly.flyers(),
+        trajectories: assembly.trajectories(),
         connectors: connectors.all(),
         tolerances: &assembly.settings().tolerances,
     }
@@ -265,7 +265,7 @@ mod tests {
         let mechanism = mechanism(&rooms.assembly, &rooms.connectors);
         let room = |row: &HeldRow, lean: f64| {
             let mut movings =
-                [0, 1].map(|body| rooms.assembly.flyer(BodyId(body)).moving_at(rooms.assembly.now()));
+                [0, 1].map(|body| rooms.assembly.trajectory(BodyId(body)).moving_at(rooms.assembly.now()));
             let position = movings[1].pose.position;
             movings[1].pose = Pose::new(position, FRAC_PI_2 + lean / 0.1);
             mechanism.way_to_end(row, &movings).expect("the corner ends")

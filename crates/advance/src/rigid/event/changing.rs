@@ -91,7 +91,8 @@ fn hand_over(rooms: &mut Rooms, work: &mut EventWork) {
 fn stop_bilaterally(rooms: &mut Rooms, work: &mut EventWork) {
     let now = rooms.assembly.now();
     work.before.clear();
-    work.before.extend(work.region.bodies().iter().map(|&body| rooms.assembly.flyer(body).unwound_at(now)));
+    work.before
+        .extend(work.region.bodies().iter().map(|&body| rooms.assembly.trajectory(body).unwound_at(now)));
     // A stop that may as well be left out is not worth a long solve.
     let manner = Manner::Trial;
     let outcome = resolve_impact(rooms, &mut work.region, &mut work.impact, &mut work.stop, now, manner);
@@ -106,7 +107,7 @@ fn stop_bilaterally(rooms: &mut Rooms, work: &mut EventWork) {
         book_impact(&rooms.assembly, &mut rooms.books, &work.stop, Booking::Capture);
     } else if outcome.is_ok() {
         for (&body, &state) in work.region.bodies().iter().zip(&work.before) {
-            rooms.assembly.flyer_mut(body).fly_from(now, state);
+            rooms.assembly.trajectory_mut(body).fly_from(now, state);
         }
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, now);
     }
@@ -120,13 +121,13 @@ fn is_modest(assembly: &Assembly, report: &ImpactReport, region: &Region, before
     let impulse = report.rows.iter().fold(0.0f64, |most, row| most.max(row.impulse.abs()));
     let (mut fastest, mut largest) = (0.0f64, 0.0f64);
     for (&body, before) in region.bodies().iter().zip(before) {
-        let flyer = assembly.flyer(body);
-        let after = flyer.unwound_at(assembly.now());
+        let trajectory = assembly.trajectory(body);
+        let after = trajectory.unwound_at(assembly.now());
         let moved = after.velocity.distance(before.velocity);
         let turned = (after.angular_velocity - before.angular_velocity).abs();
-        fastest = fastest.max(moved + turned * flyer.reach());
-        let Body { inverse_mass, inverse_moment, .. } = *flyer.body();
-        largest = largest.max(moved / inverse_mass).max(turned / (inverse_moment * flyer.reach()));
+        fastest = fastest.max(moved + turned * trajectory.reach());
+        let Body { inverse_mass, inverse_moment, .. } = *trajectory.body();
+        largest = largest.max(moved / inverse_mass).max(turned / (inverse_moment * trajectory.reach()));
     }
     fastest <= MODEST * stopped && impulse <= MOST_CANCELLING * largest
 }

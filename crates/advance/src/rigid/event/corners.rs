@@ -68,8 +68,11 @@ pub(crate) fn is_left_alone(
         .records()
         .iter()
         .all(|other| !other.involves_body(body) || other.connector() == Some(corner.id));
-    let flyer = assembly.flyer(body);
-    is_still && only_rows && assembly.laws().of(body).is_empty() && flyer.law().acceleration == DVec2::ZERO
+    let trajectory = assembly.trajectory(body);
+    is_still
+        && only_rows
+        && assembly.laws().of(body).is_empty()
+        && trajectory.free_motion().acceleration == DVec2::ZERO
 }
 
 /// Stops the velocity of a point across the side along which it leaves a corner; that velocity is too slow for an

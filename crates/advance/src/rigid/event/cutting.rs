@@ -167,8 +167,8 @@ fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> boo
 
 /// True if a body crosses one near it that it does not touch in a region.
 fn is_in_another(assembly: &Assembly, pairs: &Pairs, body: BodyId, region: &Region, time: Time) -> bool {
-    let pose = |body: BodyId| assembly.flyer(body).moving_at(time).pose;
-    let shape = |body: BodyId| &assembly.flyer(body).body().shape;
+    let pose = |body: BodyId| assembly.trajectory(body).moving_at(time).pose;
+    let shape = |body: BodyId| &assembly.trajectory(body).body().shape;
     pairs.of_body(body).iter().any(|&Link { pair, other }| {
         let touches = |touch: &Touch| touch.bodies == pairs.bodies(pair);
         let finite = [body, other].iter().all(|&body| pose(body).position.is_finite());
@@ -209,7 +209,7 @@ fn cut_group(
     }
     for (place, &body) in group.bodies().iter().enumerate() {
         let state = body_state(group.end_state(), group.bodies().len(), place);
-        assembly.flyer_mut(body).fly_from(time, state);
+        assembly.trajectory_mut(body).fly_from(time, state);
     }
     put_group(assembly, connectors, groups, group);
 }
@@ -228,9 +228,9 @@ fn strayed<'a>(
         let places = group.bodies().iter().zip(group.paths());
         places.filter_map(move |(&body, path)| {
             let [x, y, angle] = [0, 1, 2].map(|k: usize| path[k].value_at(offset));
-            let state = assembly.flyer(body).unwound_at(time);
+            let state = assembly.trajectory(body).unwound_at(time);
             let way = state.position.distance(DVec2::new(x, y));
-            (way + (state.angle - angle).abs() * assembly.flyer(body).reach() > allowed).then_some(body)
+            (way + (state.angle - angle).abs() * assembly.trajectory(body).reach() > allowed).then_some(body)
         })
     })
 }

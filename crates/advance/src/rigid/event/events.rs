@@ -61,7 +61,7 @@ pub(crate) fn handle_contact(
     let bodies = rooms.pairs.bodies(pair);
     if sinks(rooms, pair, features)
         || rooms.searching().passes_over(pair, features)
-        || rooms.searching().grazes(pair, features)
+        || rooms.searching().turns_back(pair, features)
     {
         return Ok(());
     }

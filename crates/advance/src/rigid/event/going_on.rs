@@ -27,7 +27,7 @@ use halfgap_geometry::GapSample;
 /// velocities.
 pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     for &body in work.region.bodies() {
-        rooms.assembly.flyer_mut(body).unwind();
+        rooms.assembly.trajectory_mut(body).unwind();
     }
     note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now());
     // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
@@ -69,7 +69,7 @@ fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
             continue;
         }
         let [a, b] = features_in(assembly, touch);
-        let pose = touch.bodies.map(|body| assembly.flyer(body).moving_at(assembly.now()).pose);
+        let pose = touch.bodies.map(|body| assembly.trajectory(body).moving_at(assembly.now()).pose);
         let is_opposite =
             |sample: GapSample| sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= 0.0;
         if GapSample::measure(a, &pose[0], b, &pose[1]).is_some_and(is_opposite) {

@@ -25,7 +25,7 @@ pub(crate) fn regroup_soundly(rooms: &mut Rooms, work: &mut EventWork) -> Result
             work.region
                 .bodies()
                 .iter()
-                .map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now())),
+                .map(|&body| rooms.assembly.trajectory(body).unwound_at(rooms.assembly.now())),
         );
         let projections = rooms.books.ledger().projections;
         let outcome = regroup(rooms, &work.region, &work.settling);
@@ -113,10 +113,10 @@ mod tests {
         settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false).expect("it rests");
         settling.held_mut()[0].1.gap += lifted;
         region.records_mut()[0].motion.normal_velocity = opening;
-        let mut state = rooms.assembly.flyer(disc).unwound_at(rooms.assembly.now());
+        let mut state = rooms.assembly.trajectory(disc).unwound_at(rooms.assembly.now());
         (state.position.y, state.velocity.y) = (state.position.y - sunk, -falling);
         let now = rooms.assembly.now();
-        rooms.assembly.flyer_mut(disc).fly_from(now, state);
+        rooms.assembly.trajectory_mut(disc).fly_from(now, state);
         harm_done(&rooms.assembly, &work)
     }
 

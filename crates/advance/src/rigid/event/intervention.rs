@@ -55,8 +55,9 @@ pub(crate) fn change_laws(
     };
     restart(rooms, work, law.bodies().iter().copied(), |assembly, books| {
         let now = assembly.now();
-        let movings: Vec<Moving> = assembly.flyers().iter().map(|flyer| flyer.moving_at(now)).collect();
-        let snapshot = Snapshot::of_unwound(now.seconds(), &movings, assembly.flyers());
+        let movings: Vec<Moving> =
+            assembly.trajectories().iter().map(|trajectory| trajectory.moving_at(now)).collect();
+        let snapshot = Snapshot::of_unwound(now.seconds(), &movings, assembly.trajectories());
         let potential = law.potential(&snapshot).unwrap_or(0.0);
         match change {
             LawChange::Add(law) => {
@@ -89,8 +90,9 @@ fn restart(
     }
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
     work.before.clear();
-    work.before
-        .extend(work.seeds.iter().map(|&body| rooms.assembly.flyer(body).unwound_at(rooms.assembly.now())));
+    work.before.extend(
+        work.seeds.iter().map(|&body| rooms.assembly.trajectory(body).unwound_at(rooms.assembly.now())),
+    );
     cut_groups(rooms, &mut work.region);
     take_back_cut(&mut rooms.assembly, &mut rooms.books, &work.seeds, &work.before);
     act(&mut rooms.assembly, &mut rooms.books);
@@ -104,7 +106,7 @@ fn restart(
 /// projected onto its rows, which callers that change a velocity do not expect.
 fn take_back_cut(assembly: &mut Assembly, books: &mut Books, bodies: &[BodyId], seen: &[BodyState]) {
     for (&body, &BodyState { velocity, angular_velocity, .. }) in bodies.iter().zip(seen) {
-        let cut = assembly.flyer(body).unwound_at(assembly.now());
+        let cut = assembly.trajectory(body).unwound_at(assembly.now());
         if (cut.velocity, cut.angular_velocity) == (velocity, angular_velocity) {
             continue;
         }
@@ -116,7 +118,7 @@ fn take_back_cut(assembly: &mut Assembly, books: &mut Books, bodies: &[BodyId], 
         };
         books.book_projection(work_of(assembly, body, &cut, &change));
         let now = assembly.now();
-        assembly.flyer_mut(body).fly_from(now, BodyState { velocity, angular_velocity, ..cut });
+        assembly.trajectory_mut(body).fly_from(now, BodyState { velocity, angular_velocity, ..cut });
     }
 }
 
@@ -124,7 +126,7 @@ fn take_back_cut(assembly: &mut Assembly, books: &mut Books, bodies: &[BodyId], 
 fn change_velocity(assembly: &mut Assembly, books: &mut Books, change: &VelocityChange) {
     let &VelocityChange { body, velocity, angular_velocity } = change;
     book_damping(assembly, books, body, assembly.now());
-    let before = assembly.flyer(body).unwound_at(assembly.now());
+    let before = assembly.trajectory(body).unwound_at(assembly.now());
     books.book_intervention(work_of(assembly, body, &before, change));
     let now = assembly.now();
     interrupt(assembly, books, body).cut(now, velocity, angular_velocity);

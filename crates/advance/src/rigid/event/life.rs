@@ -74,7 +74,7 @@ pub(crate) fn undo_groups(
             drop_group(assembly, connectors, groups, leader);
         }
         let now = assembly.now();
-        assembly.flyer_mut(body).fly_from(now, state);
+        assembly.trajectory_mut(body).fly_from(now, state);
     }
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
     for place in 0..group.bodies().len() {
         let body = group.bodies()[place];
         book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
-        group.set_end(place, &rooms.assembly.flyer(body).unwound_at(now));
+        group.set_end(place, &rooms.assembly.trajectory(body).unwound_at(now));
     }
     with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
         dynamics.soften_dependent();
@@ -181,7 +181,7 @@ pub(crate) fn look_further(
 fn give_up(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) {
     for (place, &body) in group.bodies().iter().enumerate() {
         let state = body_state(group.state(), group.bodies().len(), place);
-        assembly.flyer_mut(body).fly_from(group.start(), state);
+        assembly.trajectory_mut(body).fly_from(group.start(), state);
     }
     part(assembly, connectors, group);
 }
@@ -190,7 +190,7 @@ fn give_up(assembly: &mut Assembly, connectors: &mut Connectors, group: &Group) 
 fn fly_along(assembly: &mut Assembly, group: &Group) {
     let span = group.end().since(group.start());
     for (&body, paths) in group.bodies().iter().zip(group.paths()) {
-        assembly.flyer_mut(body).follow(group.start(), paths, span);
+        assembly.trajectory_mut(body).follow(group.start(), paths, span);
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
         let after = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
         rooms.books.book_projection(after - before);
         for &body in work.region.bodies() {
-            rooms.search.follow(rooms.assembly.flyer(body), body);
+            rooms.search.follow(rooms.assembly.trajectory(body), body);
         }
         work.seeds.clear();
         work.seeds.extend(work.region.bodies());
@@ -59,11 +59,11 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
     let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
     sinking.note_move(share * longest.0);
     for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts.iter()) {
-        let state = assembly.flyer(body).unwound_at(assembly.now());
+        let state = assembly.trajectory(body).unwound_at(assembly.now());
         let position = state.position + share * DVec2::new(x, y);
         let moved = BodyState { position, angle: state.angle + share * turn, ..state };
         let now = assembly.now();
-        assembly.flyer_mut(body).fly_from(now, moved);
+        assembly.trajectory_mut(body).fly_from(now, moved);
     }
     Some(share)
 }
@@ -72,7 +72,7 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
 /// fraction of the body's reach.
 fn longest_way(assembly: &Assembly, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
     let ways = region.bodies().iter().zip(shifts).map(|(&body, [x, y, turn])| {
-        let reach = assembly.flyer(body).reach();
+        let reach = assembly.trajectory(body).reach();
         let way = libm::hypot(*x, *y) + turn.abs() * reach;
         (way, way / reach)
     });
@@ -99,14 +99,15 @@ fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &
 fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking, region: &Region) -> f64 {
     let mut energy = 0.0;
     for &body in region.bodies() {
-        groups.place(body, assembly.flyer(body).moving_at(assembly.now()));
-        let flyer = assembly.flyer(body);
+        groups.place(body, assembly.trajectory(body).moving_at(assembly.now()));
+        let trajectory = assembly.trajectory(body);
         let position = groups.stage().movings()[body.index()].pose.position;
-        energy -= flyer.law().acceleration.dot(position) / flyer.body().inverse_mass;
+        energy -= trajectory.free_motion().acceleration.dot(position) / trajectory.body().inverse_mass;
     }
     let mut laws = sinking.take_laws();
     assembly.laws().list(region.bodies(), &mut laws);
-    let now = Snapshot::of_unwound(assembly.now().seconds(), groups.stage().movings(), assembly.flyers());
+    let now =
+        Snapshot::of_unwound(assembly.now().seconds(), groups.stage().movings(), assembly.trajectories());
     let of_laws = laws.iter().filter_map(|&law| assembly.laws().all[law].potential(&now)).sum::<f64>();
     sinking.put_laws(laws);
     energy + of_laws

@@ -2,9 +2,9 @@
 
 use crate::rigid::agenda::Agenda;
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::Snapshot;
 use crate::rigid::bodies::laws::Laws;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::all::Books;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::pairs::Pairs;
@@ -47,12 +47,14 @@ impl Rooms {
     /// Makes the rooms of the given parts, with all bodies in flight and nothing predicted.
     pub(crate) fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Self {
         let RigidParts { bodies, connectors, laws, excluded } = parts;
-        let flyer = |BodyPart { body, law, state }| Flyer::new(body, law, state, start);
-        let flyers: Vec<Flyer> = bodies.into_iter().map(flyer).collect();
-        let movings: Vec<Moving> = flyers.iter().map(|flyer| flyer.moving_at(start)).collect();
+        let trajectory =
+            |BodyPart { body, free_motion: law, state }| Trajectory::new(body, law, state, start);
+        let trajectories: Vec<Trajectory> = bodies.into_iter().map(trajectory).collect();
+        let movings: Vec<Moving> =
+            trajectories.iter().map(|trajectory| trajectory.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
-        let count = flyers.len();
-        let movable = flyers.iter().filter(|flyer| !flyer.body().is_fixed()).count();
+        let count = trajectories.len();
+        let movable = trajectories.iter().filter(|trajectory| !trajectory.body().is_fixed()).count();
         let books = Books::new(movable, laws.len());
         let laws = Laws::new(laws, count, &snapshot);
         let connectors = Connectors::new(connectors, count);
@@ -60,15 +62,15 @@ impl Rooms {
             books,
             agenda: Agenda::new(count, connectors.all().len()),
             connectors,
-            pairs: Pairs::new(flyers.iter().map(|flyer| flyer.body().is_fixed()).collect()),
-            search: Neighbourhood::new(&flyers, excluded, &settings),
+            pairs: Pairs::new(trajectories.iter().map(|trajectory| trajectory.body().is_fixed()).collect()),
+            search: Neighbourhood::new(&trajectories, excluded, &settings),
             groups: Groups::new(movings, settings.method),
             zeno: Zeno::new(count),
             sinking: Sinking::default(),
             members: Members::default(),
             coupling: Coupling::default(),
             work: None,
-            assembly: Assembly::new(flyers, laws, settings, start),
+            assembly: Assembly::new(trajectories, laws, settings, start),
         }
     }
 

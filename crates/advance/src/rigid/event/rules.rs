@@ -10,7 +10,7 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::region::touching::Region;
 use crate::rigid::remedies::Remedy;
-use crate::rigid::search::graze::grazing_gap;
+use crate::rigid::search::dead_point::dead_point_gap;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::sinking::depth::sinks_to;
 use crate::rigid::zeno::repeats::repeats_beyond_calm;
@@ -23,12 +23,13 @@ const SEAM_SHARE: f64 = 1.0 / 32.0;
 /// Depth, as a multiple of that at which a deep contact was to fire, from which it has gone round its body.
 const MUCH_DEEPER: f64 = 2.0;
 
-/// Gap [m] at which an opening contact fires: the target of any pair, however low the halos of its bodies. A
+/// Gap [m] at which an opening contact fires: the target of any pair, however low the trigger gaps of its bodies. A
 /// contact may have been moved so deep, as others were brought to the gaps at which they are held, that the search
 /// would take it for the far side of a body, and it may come back before it is out: it fires where it lies.
 fn returns_to(assembly: &Assembly, touch: Touch) -> f64 {
-    let [a, b] = [0, 1]
-        .map(|side: usize| assembly.flyer(touch.bodies[side]).body().shape.feature(touch.features[side]));
+    let [a, b] = [0, 1].map(|side: usize| {
+        assembly.trajectory(touch.bodies[side]).body().shape.feature(touch.features[side])
+    });
     // In a hollow that is barely larger, a contact never opens as far as others have to.
     let target = pair_tolerances(a, b, &assembly.settings().tolerances).target_gap;
     let (gap, _) = gap_at(assembly, touch, assembly.now());
@@ -47,14 +48,14 @@ pub(crate) fn set_rules(
     let rest = assembly.rest_speed();
     take_rules(assembly, pairs, search, region);
     let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
-    set_halos(assembly, search, region);
+    set_trigger_gaps(assembly, search, region);
     for (touch, &(gap, rate)) in region.touches().iter().zip(region.motions()) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
         let is_held = settling.holds_touch(*touch);
         let rule: FeatureRule = if is_held || is_watched(assembly, groups, *touch) {
             touch.skipped()
         } else if settling.lets_pass(*touch) {
-            touch.lowered_to(grazing_gap(assembly, touch.bodies))
+            touch.lowered_to(dead_point_gap(assembly, touch.bodies))
         } else {
             // A contact that fires although it does not close would do so again at once: it may sink, but no
             // farther than its zone.
@@ -122,7 +123,7 @@ pub(crate) fn deepest(assembly: &Assembly) -> f64 {
 /// the edges on both sides of corners that are held tip on tip.
 fn leave_ends_alone(assembly: &Assembly, pairs: &mut Pairs, pair: PairId, touch: &Touch) {
     let [a, b] = touch.features;
-    let shapes = touch.bodies.map(|body| &assembly.flyer(body).body().shape);
+    let shapes = touch.bodies.map(|body| &assembly.trajectory(body).body().shape);
     let [next_to_a, next_to_b] = match (shapes[0].sides_of(a), shapes[1].sides_of(b)) {
         (Some(of_a), Some(of_b)) => [of_a.map(Some), of_b.map(Some)],
         _ => [shapes[0].ends_of(a), shapes[1].ends_of(b)],
@@ -159,10 +160,10 @@ pub(crate) fn lower_insistent(
                 rule.target = rule.target.map(|target| target - lower);
             }
         });
-        // The halo of a body that cannot move would never be raised again: it is in no region.
+        // The trigger gap of a body that cannot move would never be raised again: it is in no region.
         for body in pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
-            let halo = search.lanes()[body.index()].halo();
-            search.set_halo(body, halo - lower);
+            let trigger_gap = search.lanes()[body.index()].trigger_gap();
+            search.set_trigger_gap(body, trigger_gap - lower);
         }
     }
     search.put_touched(insistent);
@@ -172,17 +173,17 @@ pub(crate) fn lower_insistent(
 fn is_idle(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, rule: &FeatureRule) -> bool {
     let target = assembly.settings().tolerances.target_gap;
     let mut lanes = touch.bodies.iter().map(|body| &search.lanes()[body.index()]);
-    rule.target == Some(target) && lanes.all(|lane| lane.radius() > 0.0 && lane.halo() == target)
+    rule.target == Some(target) && lanes.all(|lane| lane.radius() > 0.0 && lane.trigger_gap() == target)
 }
 
 /// Sets the gap at which each body of a region fires: its target, or a little less than the gap of a contact that
 /// it has.
 ///
 /// So a body that slides along at less than its target does not run against the seam of the next floor.
-fn set_halos(assembly: &Assembly, search: &mut Neighbourhood, region: &Region) {
+fn set_trigger_gaps(assembly: &Assembly, search: &mut Neighbourhood, region: &Region) {
     let target = assembly.settings().tolerances.target_gap;
     for &body in region.bodies() {
-        search.set_halo(body, target);
+        search.set_trigger_gap(body, target);
     }
     let seam = SEAM_SHARE * assembly.settings().tolerances.accuracy;
     let least = target - assembly.settings().tolerances.accuracy;
@@ -191,10 +192,10 @@ fn set_halos(assembly: &Assembly, search: &mut Neighbourhood, region: &Region) {
             continue;
         }
         for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
-            let halo = search.lanes()[body.index()].halo();
+            let trigger_gap = search.lanes()[body.index()].trigger_gap();
             let lower = (gap - seam).max(least);
-            if lower < halo && assembly.remedies().act(Remedy::Halos) {
-                search.set_halo(body, lower);
+            if lower < trigger_gap && assembly.remedies().act(Remedy::TriggerGaps) {
+                search.set_trigger_gap(body, lower);
             }
         }
     }
@@ -222,10 +223,10 @@ mod tests {
         let [touch] = work.region.touches()[..] else { panic!("one disc, one contact") };
         dissolve(&mut rooms, BodyId(1));
         for (depth, expected) in [(-1.0, target), (0.4, target), (0.9, -0.9 * target)] {
-            let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now());
+            let mut state = rooms.assembly.trajectory(BodyId(1)).state_at(rooms.assembly.now());
             state.position.y = 0.5 - depth * target;
             let now = rooms.assembly.now();
-            rooms.assembly.flyer_mut(BodyId(1)).fly_from(now, state);
+            rooms.assembly.trajectory_mut(BodyId(1)).fly_from(now, state);
             assert!(
                 (returns_to(&rooms.assembly, touch) - expected).abs() < 1e-9 * target,
                 "{depth} target gaps"
@@ -246,10 +247,10 @@ mod tests {
         work.region.forget_touches();
         let told = [target, -0.9 * target].map(|target| touch.lowered_to(target));
         for (rule, gap, is_kept) in [(0, -0.9, false), (1, -0.8, true), (1, -0.1, false), (1, -2.0, false)] {
-            let mut state = rooms.assembly.flyer(BodyId(1)).state_at(rooms.assembly.now());
+            let mut state = rooms.assembly.trajectory(BodyId(1)).state_at(rooms.assembly.now());
             (state.position.y, state.velocity.y) = (0.5 + gap * target, 1e-3);
             let now = rooms.assembly.now();
-            rooms.assembly.flyer_mut(BodyId(1)).fly_from(now, state);
+            rooms.assembly.trajectory_mut(BodyId(1)).fly_from(now, state);
             rooms.pairs.clear_rules_of(BodyId(1));
             rooms.pairs.change_rules(pair, |rules| rules.push(told[rule]));
             set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, &work);
@@ -265,7 +266,7 @@ mod tests {
     fn a_floor_on_which_a_contact_insists_fires_elsewhere_as_before() {
         let mut rooms = resting_discs(&[0.0]);
         let [floor, disc] = [BodyId(0), BodyId(1)];
-        let before = rooms.search.lanes()[floor.index()].halo();
+        let before = rooms.search.lanes()[floor.index()].trigger_gap();
         let pair = rooms.pairs.between(floor, disc).expect("they touch");
         for _ in 0..CALM_REPEATS + 5 {
             note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair).expect("not stuck yet");
@@ -275,7 +276,7 @@ mod tests {
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
         measure_touches(&rooms.assembly, &mut work.region);
         lower_insistent(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &work.region);
-        assert!(rooms.search.lanes()[disc.index()].halo() < before);
-        assert_eq!(rooms.search.lanes()[floor.index()].halo(), before);
+        assert!(rooms.search.lanes()[disc.index()].trigger_gap() < before);
+        assert_eq!(rooms.search.lanes()[floor.index()].trigger_gap(), before);
     }
 }

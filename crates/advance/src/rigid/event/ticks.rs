@@ -169,10 +169,10 @@ mod tests {
         };
         assert_eq!(notes(&mut rooms, 2 * MOST_PRESSED), None, "nothing has sunk");
         dissolve(&mut rooms, bodies[1]);
-        let mut state = rooms.assembly.flyer(bodies[1]).state_at(rooms.assembly.now());
+        let mut state = rooms.assembly.trajectory(bodies[1]).state_at(rooms.assembly.now());
         state.position.y -= 0.5 * room_to_sink(&rooms.assembly, bodies);
         let now = rooms.assembly.now();
-        rooms.assembly.flyer_mut(BodyId(1)).fly_from(now, state);
+        rooms.assembly.trajectory_mut(BodyId(1)).fly_from(now, state);
         assert_eq!(notes(&mut rooms, MOST_PRESSED), None);
         let between = Between { primary: bodies[0], normal: bodies[1] };
         let (time, events) = (rooms.assembly.now().seconds(), MOST_PRESSED + 1);

@@ -106,7 +106,7 @@ impl Dynamics<'_> {
     #[inline(always)]
     fn response_to_row(&self, side: usize) -> Response {
         let Some(place) = self.group.sides[0][side] else { return Response::default() };
-        let inertia = self.physics.mechanism.flyers[self.group.bodies[place as usize].index()].body();
+        let inertia = self.physics.mechanism.trajectories[self.group.bodies[place as usize].index()].body();
         let jacobian = &self.stage.jacobians[0];
         let [x, y, turning] = [0, 1, 2].map(|k: usize| jacobian[3 * side + k]);
         let acceleration =
@@ -194,7 +194,7 @@ impl Dynamics<'_> {
         let of_group = (self.group.bodies.as_slice(), self.group.laws.as_slice());
         self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
         if self.stage.asks_free_acceleration {
-            self.stage.note_free_acceleration(self.physics.mechanism.flyers, &self.group.bodies);
+            self.stage.note_free_acceleration(self.physics.mechanism.trajectories, &self.group.bodies);
             self.stage.note_force_length(&self.physics, &self.group.laws, time);
         }
         if !self.group.rows.is_empty() {

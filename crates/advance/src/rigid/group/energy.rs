@@ -80,7 +80,7 @@ impl Dynamics<'_> {
         let kinetic = self.kinetic_energy(state);
         let mut total = kinetic;
         for (place, &body) in self.group.bodies.iter().enumerate() {
-            let pull = self.physics.mechanism.flyers[body.index()].law().acceleration;
+            let pull = self.physics.mechanism.trajectories[body.index()].free_motion().acceleration;
             total -= self.mass(body) * pull.dot(body_state(state, count, place).position);
         }
         if self.group.laws.is_empty() {
@@ -95,12 +95,13 @@ impl Dynamics<'_> {
 
     fn kinetic_energy(&self, state: &[f64]) -> f64 {
         let count = self.group.bodies.len();
-        let bodies = self.group.bodies.iter().map(|body| self.physics.mechanism.flyers[body.index()].body());
+        let bodies =
+            self.group.bodies.iter().map(|body| self.physics.mechanism.trajectories[body.index()].body());
         bodies.enumerate().map(|(place, body)| body.kinetic_energy(&body_state(state, count, place))).sum()
     }
 
     /// Mass [kg] of a body.
     pub(crate) fn mass(&self, body: BodyId) -> f64 {
-        self.physics.mechanism.flyers[body.index()].body().inverse_mass.recip()
+        self.physics.mechanism.trajectories[body.index()].body().inverse_mass.recip()
     }
 }

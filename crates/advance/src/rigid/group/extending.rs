@@ -92,7 +92,7 @@ impl Dynamics<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::event::rooms::Rooms;
     use crate::rigid::group::groups::with_group;
     use crate::rigid::parts::{BodyPart, RigidParts};
@@ -116,7 +116,7 @@ mod tests {
     fn turning_disc_on_rods(ends: &[DVec2], spin: f64, angular_rate: f64) -> Rooms {
         let disc = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape: disc, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
-        let law = FlightLaw { acceleration: DVec2::new(0.0, -10.0), angular_rate, ..FlightLaw::default() };
+        let law = FreeMotion { acceleration: DVec2::new(0.0, -10.0), angular_rate, ..FreeMotion::default() };
         let (position, velocity) = (DVec2::new(1.0, 0.0), DVec2::new(0.0, 2.0));
         let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
         let b = Anchor { body: BodyId(0), point: DVec2::ZERO };
@@ -125,7 +125,7 @@ mod tests {
             let rod = ConnectorKind::Rod { a, b, length: point.distance(position) };
             Connector::new(rod, 0.0).expect("a fine rod")
         });
-        let (bodies, connectors) = (vec![BodyPart { body, law, state }], rods.collect());
+        let (bodies, connectors) = (vec![BodyPart { body, free_motion: law, state }], rods.collect());
         let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         rooms_of(parts, FINE, Time::ZERO)
     }

@@ -36,8 +36,8 @@ impl Dynamics<'_> {
     /// True if an acceleration is no larger than a force [N] at the centre, or at the body's reach, would make it.
     #[inline]
     fn is_level(&self, &[x, y, angular]: &[f64; 3], body: BodyId, force: f64) -> bool {
-        let flyer = &self.physics.mechanism.flyers[body.index()];
-        let (inertia, reach) = (flyer.body(), flyer.reach());
+        let trajectory = &self.physics.mechanism.trajectories[body.index()];
+        let (inertia, reach) = (trajectory.body(), trajectory.reach());
         let linear = force * inertia.inverse_mass;
         x * x + y * y <= linear * linear && angular.abs() <= force * inertia.inverse_moment * reach
     }
@@ -46,7 +46,7 @@ impl Dynamics<'_> {
     /// acceleration counts: what is rounding for a light body under large forces need not be so for a heavy one under
     /// small ones.
     fn keep_pushed(&mut self) {
-        let flyers = self.physics.mechanism.flyers;
+        let trajectories = self.physics.mechanism.trajectories;
         let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
         let mut any = levels.contains(&true) && levels.contains(&false);
         while std::mem::take(&mut any) {
@@ -59,7 +59,7 @@ impl Dynamics<'_> {
                 }
                 let row = &jacobian[3 * side..3 * side + 3];
                 let pushed: f64 = row.iter().zip(&accelerations[level]).map(|(j, a)| j * a).sum();
-                let inertia = flyers[self.group.bodies[other].index()].body();
+                let inertia = trajectories[self.group.bodies[other].index()].body();
                 if pushed.abs() > LEVEL * gross[other] * inertia.inverse_mass {
                     levels[level] = false;
                     any = true;

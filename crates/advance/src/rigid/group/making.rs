@@ -84,7 +84,7 @@ impl Group {
         let works =
             self.laws.iter().copied().filter(|&law| !assembly.laws().has_potential[law]).map(Work::Law);
         self.works.extend(works);
-        if self.bodies.iter().any(|&body| assembly.flyer(body).law().is_damped()) {
+        if self.bodies.iter().any(|&body| assembly.trajectory(body).free_motion().is_damped()) {
             self.works.push(Work::Damping);
         }
     }

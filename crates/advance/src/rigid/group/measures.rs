@@ -68,7 +68,7 @@ impl Dynamics<'_> {
 
     /// Distance [m] from a body's centre of mass to its farthest point.
     pub(crate) fn reach(&self, body: BodyId) -> f64 {
-        self.physics.mechanism.flyers[body.index()].reach()
+        self.physics.mechanism.trajectories[body.index()].reach()
     }
 
     /// True unless rounding of positions, where forces vary over a short length, changes the energy by more than the
@@ -140,7 +140,7 @@ impl Dynamics<'_> {
         let count = self.group.bodies.len();
         self.group.bodies.iter().enumerate().map(move |(place, &body)| {
             let at = 3 * (count + place);
-            self.physics.mechanism.flyers[body.index()].fastest_point([
+            self.physics.mechanism.trajectories[body.index()].fastest_point([
                 state[at] - common.x,
                 state[at + 1] - common.y,
                 state[at + 2],

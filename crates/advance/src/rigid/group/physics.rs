@@ -1,8 +1,8 @@
 //! The parts of a system from which the motion of groups is computed.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::{ForceLaw, Snapshot};
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::Mechanism;
 use crate::rigid::remedies::Remedies;
@@ -25,26 +25,26 @@ pub(crate) struct Physics<'a> {
 impl<'a> Physics<'a> {
     /// The physics of a system with these parts.
     pub(crate) fn of(
-        flyers: &'a [Flyer],
+        trajectories: &'a [Trajectory],
         connectors: &'a [Connector],
         laws: &'a [Arc<dyn ForceLaw>],
         (settings, remedies): (&'a RigidSettings, &'a Remedies),
     ) -> Self {
-        let mechanism = Mechanism { flyers, connectors, tolerances: &settings.tolerances };
+        let mechanism = Mechanism { trajectories, connectors, tolerances: &settings.tolerances };
         let RigidSettings { extra, ref steps, projection: projects, .. } = *settings;
         Self { mechanism, laws, extra, steps, remedies, projects }
     }
 
     /// What the laws see of bodies that move like this at a time [s].
     pub(crate) fn snapshot(&self, time: f64, movings: &'a [Moving]) -> Snapshot<'a> {
-        Snapshot::of_unwound(time, movings, self.mechanism.flyers)
+        Snapshot::of_unwound(time, movings, self.mechanism.trajectories)
     }
 }
 
 /// The parts of the system from which the motion of groups is computed.
 pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Physics<'a> {
     Physics::of(
-        assembly.flyers(),
+        assembly.trajectories(),
         connectors.all(),
         &assembly.laws().all,
         (assembly.settings(), assembly.remedies()),

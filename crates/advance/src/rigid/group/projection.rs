@@ -128,12 +128,10 @@ impl Dynamics<'_> {
 
     /// Largest displacement [m], or change of velocity [m/s], of a point of a body by the changes in the stage.
     pub(crate) fn largest_change(&self) -> f64 {
-        let sizes = self
-            .group
-            .bodies
-            .iter()
-            .zip(&self.stage.changes)
-            .map(|(&body, &change)| self.physics.mechanism.flyers[body.index()].fastest_point(change));
+        let sizes =
+            self.group.bodies.iter().zip(&self.stage.changes).map(|(&body, &change)| {
+                self.physics.mechanism.trajectories[body.index()].fastest_point(change)
+            });
         sizes.fold(0.0, f64::max)
     }
 

@@ -1,14 +1,14 @@
 //! Buffers for the evaluation of one moment, one set for the whole system.
 
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::law::{Wrench, Wrenches};
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::contacts::rows::{HeldRow, RowMoment};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::samples::{NODES, Samples};
 use crate::rigid::group::state::{Group, Work};
 use crate::rigid::settings::ExtraAcceleration;
 use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState, MotionBounds, Moving, Spin};
+use halfgap_collision::{BodyAcceleration, BodyId, BodyState, MotionBounds, Moving};
 
 /// Buffers for the evaluation of one moment, one set for the whole system.
 #[derive(Clone, Debug, Default)]
@@ -229,8 +229,8 @@ impl Stage {
         let mut damped = 0.0;
         self.accelerations.clear();
         for &body in bodies {
-            let flyer = &physics.mechanism.flyers[body.index()];
-            let (law, inertia) = (flyer.law(), flyer.body());
+            let trajectory = &physics.mechanism.trajectories[body.index()];
+            let (law, inertia) = (trajectory.free_motion(), trajectory.body());
             let (moving, wrench) = (&self.movings[body.index()], &self.wrenches[body.index()]);
             let (v, w) = (moving.velocity, moving.angular_velocity);
             let linear = law.acceleration - v * law.linear_rate + wrench.force * inertia.inverse_mass;
@@ -267,16 +267,16 @@ impl Stage {
     }
 
     #[inline]
-    pub(crate) fn spin_at(&self, place: Option<u32>) -> Spin {
-        place.map_or(Spin::default(), |place| {
+    pub(crate) fn spin_at(&self, place: Option<u32>) -> BodyAcceleration {
+        place.map_or(BodyAcceleration::default(), |place| {
             let [x, y, angular] = self.accelerations[place as usize];
-            Spin { linear: DVec2::new(x, y), angular }
+            BodyAcceleration { linear: DVec2::new(x, y), angular }
         })
     }
 
     /// Notes the largest acceleration of a point of some bodies, before the forces of rows are added.
-    pub(crate) fn note_free_acceleration(&mut self, flyers: &[Flyer], bodies: &[BodyId]) {
-        let of_points = |(&body, &rate): (&BodyId, &[f64; 3])| flyers[body.index()].fastest_point(rate);
+    pub(crate) fn note_free_acceleration(&mut self, trajectories: &[Trajectory], bodies: &[BodyId]) {
+        let of_points = |(&body, &rate): (&BodyId, &[f64; 3])| trajectories[body.index()].fastest_point(rate);
         self.free_acceleration = bodies.iter().zip(&self.accelerations).map(of_points).fold(0.0, f64::max);
     }
 

@@ -82,7 +82,11 @@ impl Dynamics<'_> {
 
     /// The largest damping rate [1/s] of a body of the group. Estimates from steps do not show it in bodies at rest.
     fn damping_rate(&self) -> f64 {
-        let laws = self.group.bodies.iter().map(|&body| self.physics.mechanism.flyers[body.index()].law());
+        let laws = self
+            .group
+            .bodies
+            .iter()
+            .map(|&body| self.physics.mechanism.trajectories[body.index()].free_motion());
         laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
     }
 
@@ -152,7 +156,7 @@ impl Dynamics<'_> {
         rates.resize(trial.len(), 0.0);
         for (place, &body) in self.group.bodies.iter().enumerate() {
             let way = moved * DVec2::from_angle(f64::from(turn) + place as f64);
-            let reach = self.physics.mechanism.flyers[body.index()].reach();
+            let reach = self.physics.mechanism.trajectories[body.index()].reach();
             trial[3 * place] += way.x;
             trial[3 * place + 1] += way.y;
             trial[3 * place + 2] += (way.x + way.y) / reach;
@@ -166,7 +170,7 @@ impl Dynamics<'_> {
         roughness.resize(bodies.len(), 0.0);
         let mut most: f64 = 0.0;
         for (place, (&body, rough)) in bodies.iter().zip(roughness).enumerate() {
-            let reach = self.physics.mechanism.flyers[body.index()].reach();
+            let reach = self.physics.mechanism.trajectories[body.index()].reach();
             let change = |k: usize| {
                 let at = velocities + 3 * place + k;
                 (rates[at] - end_rates[at]).abs()

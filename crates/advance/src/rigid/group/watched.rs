@@ -35,15 +35,15 @@ impl Dynamics<'_> {
         let group = &*self.group;
         let count = group.bodies.len();
         let waits = group.bodies.iter().enumerate().map(|(place, &body)| {
-            let flyer = &self.physics.mechanism.flyers[body.index()];
-            if spares_discs && flyer.disc().is_some() {
+            let trajectory = &self.physics.mechanism.trajectories[body.index()];
+            if spares_discs && trajectory.disc().is_some() {
                 return f64::INFINITY;
             }
             let of_points = |values: &[f64]| {
                 let at = 3 * (count + place);
-                flyer.fastest_point([values[at], values[at + 1], values[at + 2]])
+                trajectory.fastest_point([values[at], values[at + 1], values[at + 2]])
             };
-            wait(WATCHED_SHARE * flyer.reach(), of_points(&group.state), of_points(&group.rates))
+            wait(WATCHED_SHARE * trajectory.reach(), of_points(&group.state), of_points(&group.rates))
         });
         waits.fold(f64::INFINITY, f64::min)
     }
@@ -74,11 +74,11 @@ impl Dynamics<'_> {
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
             let Some(place) = places[side] else { continue };
             let rates = of(place, &group.rates);
-            let flyer = &self.physics.mechanism.flyers[row.bodies[side].index()];
-            reach = reach.max(flyer.reach());
+            let trajectory = &self.physics.mechanism.trajectories[row.bodies[side].index()];
+            reach = reach.max(trajectory.reach());
             pull += rates.velocity * sign;
             // The turning of a disc changes no contact.
-            if flyer.disc().is_none() {
+            if trajectory.disc().is_none() {
                 turn += movings[side].angular_velocity.abs();
                 turn_rate += rates.angular_velocity.abs();
             }

@@ -26,7 +26,7 @@ pub(crate) fn drop_idle(
     // Loads [N] of each body: its own and those of its rows.
     gross.clear();
     let bodies = region.bodies().iter().zip(stage.accelerations());
-    gross.extend(bodies.map(|(&body, acceleration)| assembly.flyer(body).load(acceleration)));
+    gross.extend(bodies.map(|(&body, acceleration)| assembly.trajectory(body).load(acceleration)));
     for (&index, force) in candidates.iter().zip(&solution.force) {
         for place in places_of(region, &region.records()[index]) {
             gross[place] += force.abs();

@@ -50,10 +50,13 @@ pub(crate) fn turning(assembly: &Assembly, record: &Collision) -> f64 {
         if body.is_world() {
             return 0.0;
         }
-        let flyer = assembly.flyer(body);
-        let sliding =
-            if flyer.body().is_fixed() { 0.0 } else { record.motion.lateral_velocity / flyer.reach() };
-        sliding.abs() + flyer.moving_at(assembly.now()).angular_velocity.abs()
+        let trajectory = assembly.trajectory(body);
+        let sliding = if trajectory.body().is_fixed() {
+            0.0
+        } else {
+            record.motion.lateral_velocity / trajectory.reach()
+        };
+        sliding.abs() + trajectory.moving_at(assembly.now()).angular_velocity.abs()
     };
     let parties = &record.parties;
     record.geometry.normal_rate.length() + of_body(parties.primary.body) + of_body(parties.normal.body)

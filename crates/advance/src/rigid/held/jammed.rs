@@ -18,6 +18,6 @@ pub(crate) fn is_jammed(assembly: &Assembly, region: &Region, settling: &Settlin
 /// True if a largest contact force [N] is that of a jam.
 pub(crate) fn is_jam(assembly: &Assembly, region: &Region, stage: &Stage, largest: f64) -> bool {
     let loads =
-        region.bodies().iter().zip(stage.accelerations()).map(|(&body, a)| assembly.flyer(body).load(a));
+        region.bodies().iter().zip(stage.accelerations()).map(|(&body, a)| assembly.trajectory(body).load(a));
     largest > JAM * loads.sum::<f64>()
 }

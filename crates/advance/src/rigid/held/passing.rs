@@ -5,7 +5,7 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
-use crate::rigid::search::graze::{grazing_gap, is_tied};
+use crate::rigid::search::dead_point::{dead_point_gap, is_tied};
 
 /// A lever is next to none below this fraction of what it would be without the connectors.
 const LEVER: f64 = 1e-3;
@@ -25,7 +25,7 @@ pub(crate) fn let_pass(
         let record = &region.records()[index];
         let bodies = record.bodies();
         let passes = !record.parties.bilateral
-            && record.geometry.distance > grazing_gap(assembly, bodies)
+            && record.geometry.distance > dead_point_gap(assembly, bodies)
             && bodies.iter().any(|&body| is_tied(connectors, body))
             && levers.left_of(region, record, |body| assembly.inertia(body)) < LEVER * LEVER;
         let touch = Touch::of(record).filter(|_| passes);

@@ -29,7 +29,7 @@ use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, Spin};
+use halfgap_collision::{BodyAcceleration, BodyId, Collision};
 use halfgap_contact::SolveError;
 
 /// Largest opening rate of a held contact in a hasty group, as a fraction of the rate at rest.
@@ -274,7 +274,7 @@ fn accelerate_region(
     time: Time,
 ) {
     for &body in region.bodies() {
-        stage.place(body, assembly.flyer(body).moving_at(time));
+        stage.place(body, assembly.trajectory(body).moving_at(time));
     }
     assembly.laws().list(region.bodies(), &mut settling.laws);
     let physics = physics(assembly, connectors);
@@ -331,25 +331,29 @@ fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
 fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
     let sides = record.bodies();
-    let spins =
-        sides.map(|body| region.place(body).map_or(Spin::default(), |place| spin(accelerations[place])));
+    let spins = sides.map(|body| {
+        region
+            .place(body)
+            .map_or(BodyAcceleration::default(), |place| body_acceleration(accelerations[place]))
+    });
     record.motion.kinematics.acceleration(&spins[0], &spins[1])
 }
 
 /// Largest acceleration [m/s^2] of the centre of a record's bodies without the forces of rows.
 fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    let linear = places_of(region, record).map(|place| spin(stage.accelerations()[place]).linear.length());
+    let linear = places_of(region, record)
+        .map(|place| body_acceleration(stage.accelerations()[place]).linear.length());
     linear.fold(0.0, f64::max)
 }
 
-pub(crate) fn spin([x, y, angular]: [f64; 3]) -> Spin {
-    Spin { linear: DVec2::new(x, y), angular }
+pub(crate) fn body_acceleration([x, y, angular]: [f64; 3]) -> BodyAcceleration {
+    BodyAcceleration { linear: DVec2::new(x, y), angular }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::books::energy::interrupt;
     use crate::rigid::event::life::dissolve;
     use crate::rigid::event::work::EventWork;
@@ -369,13 +373,13 @@ mod tests {
             let tall = shape(Shape::block(0.2, 1.0));
             let body = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
             let state = BodyState { position: DVec2::new(x, -0.5 - GAP), ..BodyState::default() };
-            BodyPart { body, law: FlightLaw::default(), state }
+            BodyPart { body, free_motion: FreeMotion::default(), state }
         };
         let mover = |shape: Shape, y: f64, acceleration: f64| {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 3.0, elasticity: 0.0 };
-            let law = FlightLaw { acceleration: DVec2::new(0.0, acceleration), ..FlightLaw::default() };
+            let law = FreeMotion { acceleration: DVec2::new(0.0, acceleration), ..FreeMotion::default() };
             let state = BodyState { position: DVec2::new(0.0, y), ..BodyState::default() };
-            BodyPart { body, law, state }
+            BodyPart { body, free_motion: law, state }
         };
         let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
         let disc = mover(shape(Shape::disc(0.1)), -0.1 - GAP, push);
@@ -384,7 +388,7 @@ mod tests {
         let mut rooms = rooms_of(parts, FINE, Time::ZERO);
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(2));
-        let position = rooms.assembly.flyer(BodyId(3)).state_at(rooms.assembly.now()).position;
+        let position = rooms.assembly.trajectory(BodyId(3)).state_at(rooms.assembly.now()).position;
         let leaving = BodyState { position, velocity: DVec2::new(0.0, -1e-8), ..BodyState::default() };
         interrupt(&mut rooms.assembly, &mut rooms.books, BodyId(3)).fly_from(Time::ZERO, leaving);
         let EventWork { region, settling, .. } = &mut *work;
@@ -416,10 +420,11 @@ mod tests {
         let wall = |side: f64| {
             let apart = 1.0 + FINE.tolerances.target_gap;
             let state = at(side * apart, -1e-14 * side);
-            BodyPart { body: body(Shape::block(1.0, 8.0), 0.0), law: FlightLaw::default(), state }
+            BodyPart { body: body(Shape::block(1.0, 8.0), 0.0), free_motion: FreeMotion::default(), state }
         };
-        let law = FlightLaw { acceleration: DVec2::new(0.0, -9.81), ..FlightLaw::default() };
-        let block = BodyPart { body: body(Shape::block(1.0, 1.0), 1.0), law, state: at(0.0, 0.0) };
+        let law = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
+        let block =
+            BodyPart { body: body(Shape::block(1.0, 1.0), 1.0), free_motion: law, state: at(0.0, 0.0) };
         let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
         let rooms = rooms_of(parts, FINE, Time::ZERO);
         assert!(group_of(&rooms.assembly, &rooms.groups, BodyId(2)).is_none(), "nothing holds it");

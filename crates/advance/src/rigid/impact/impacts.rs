@@ -40,7 +40,7 @@ pub(crate) fn find_impulses(
     set_rows(view.assembly, view.connectors, view.pairs, region, impact);
     match manner {
         Manner::Lawful(number) => {
-            view.assembly.settings().law.resolve(impact, view.assembly.settings().order, number)
+            view.assembly.settings().impact_law.resolve(impact, view.assembly.settings().order, number)
         }
         Manner::Inelastic => impact.resolve_inelastic(),
         Manner::Trial => impact.try_inelastic(),
@@ -132,7 +132,7 @@ fn write_report(
         }
     }
     let struck = region.bodies().iter().zip(region.struck()).filter(|&(_, &is_struck)| is_struck);
-    report.add_states(struck.map(|(&body, _)| (body, assembly.flyer(body).state_at(time))));
+    report.add_states(struck.map(|(&body, _)| (body, assembly.trajectory(body).state_at(time))));
 }
 
 pub(crate) fn impact_error(

@@ -69,7 +69,7 @@ pub(crate) fn jams(assembly: &Assembly, region: &mut Region, impact: &Impact) ->
 fn momentum_changed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> f64 {
     region.sum_changes(impact);
     let changed = region.bodies().iter().zip(region.changes());
-    changed.map(|(&body, change)| assembly.flyer(body).load(change)).fold(0.0, f64::max)
+    changed.map(|(&body, change)| assembly.trajectory(body).load(change)).fold(0.0, f64::max)
 }
 
 /// Lets in again the records left out that are pressed by the impulses found without them; true if there are any.
@@ -88,7 +88,7 @@ pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::books::energy::interrupt;
     use crate::rigid::books::report::ImpactReport;
     use crate::rigid::event::resolving::resolve_impact;
@@ -120,7 +120,7 @@ mod tests {
         let body = |shape: Result<Shape, _>, inverse_mass: f64, position: DVec2, state: BodyState| {
             let shape = shape.expect("a fine size");
             let body = Body { shape, inverse_mass, inverse_moment: inverse_mass, elasticity: 0.0 };
-            BodyPart { body, law: FlightLaw::default(), state: BodyState { position, ..state } }
+            BodyPart { body, free_motion: FreeMotion::default(), state: BodyState { position, ..state } }
         };
         let going = |x: f64, y: f64| BodyState { velocity: DVec2::new(x, y), ..BodyState::default() };
         let side = 0.5 + gap;
@@ -138,7 +138,7 @@ mod tests {
         for (body, velocity) in
             [(BodyId(2), DVec2::new(0.0, -1.0)), (BodyId(3), DVec2::new(-disc_speed, 0.0))]
         {
-            let state = rooms.assembly.flyer(body).state_at(rooms.assembly.now());
+            let state = rooms.assembly.trajectory(body).state_at(rooms.assembly.now());
             let state = BodyState { velocity, angular_velocity: 0.0, ..state };
             interrupt(&mut rooms.assembly, &mut rooms.books, body).fly_from(Time::ZERO, state);
         }
@@ -148,7 +148,7 @@ mod tests {
         let now = rooms.assembly.now();
         resolve_impact(&mut rooms, &mut work.region, &mut work.impact, &mut report, now, manner)
             .expect("it can be resolved");
-        rooms.assembly.flyer(BodyId(2)).state_at(now).velocity
+        rooms.assembly.trajectory(BodyId(2)).state_at(now).velocity
     }
 
     #[test]

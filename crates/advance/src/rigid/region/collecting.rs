@@ -9,8 +9,8 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
-use crate::rigid::search::flush::is_passed_over;
-use crate::rigid::search::graze::{is_grazing, rope_grazes};
+use crate::rigid::search::dead_point::{is_near_dead_point, rope_is_near_dead_point};
+use crate::rigid::search::ghost_corner::is_ghost_corner;
 use crate::rigid::search::lane::LaneKind;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::sinking::depth::may_have_sunk_by;
@@ -37,10 +37,10 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
             if !is_held && record.geometry.distance > view.assembly.settings().tolerances.accuracy {
                 continue;
             }
-            // A row at rest is held, or may be; a held rope does not graze, though dense output may have it
+            // A row at rest is held, or may be; a held rope is at no dead point, though dense output may have it
             // closing.
             let closes = !is_held && record.motion.normal_velocity < -view.assembly.rest_speed();
-            if is_rope(connector) && closes && rope_grazes(view.assembly, view.connectors, id) {
+            if is_rope(connector) && closes && rope_is_near_dead_point(view.assembly, view.connectors, id) {
                 continue;
             }
             region.records.push(record);
@@ -77,7 +77,7 @@ pub(crate) fn collect_region(view: &View<'_>, region: &mut Region, seeds: &[Body
 /// Adds the records of a body of the region with all bodies that it touches, and these bodies.
 fn collect_touches(view: &View<'_>, region: &mut Region, place: usize, time: Time) {
     let body = region.bodies[place];
-    let moving = view.assembly.flyer(body).moving_at(time);
+    let moving = view.assembly.trajectory(body).moving_at(time);
     for &Link { other, .. } in view.pairs.of_body(body) {
         // A pair within the region was looked at with its first body.
         if region.place(other).is_some_and(|earlier| earlier < place) {
@@ -91,12 +91,13 @@ fn collect_touches(view: &View<'_>, region: &mut Region, place: usize, time: Tim
         if offset.length_squared() > reach * reach && !has_fired {
             continue;
         }
-        let (flyer, other_flyer) = (view.assembly.flyer(body), view.assembly.flyer(other));
-        let other_moving = other_flyer.moving_at(time);
+        let (trajectory, other_trajectory) =
+            (view.assembly.trajectory(body), view.assembly.trajectory(other));
+        let other_moving = other_trajectory.moving_at(time);
         // The lesser body first: records do not depend on which of the two was found first.
         let mut moments = [
-            Moment { id: body, body: flyer.body(), moving },
-            Moment { id: other, body: other_flyer.body(), moving: other_moving },
+            Moment { id: body, body: trajectory.body(), moving },
+            Moment { id: other, body: other_trajectory.body(), moving: other_moving },
         ];
         if other < body {
             moments.swap(0, 1);
@@ -110,7 +111,7 @@ fn collect_touches(view: &View<'_>, region: &mut Region, place: usize, time: Tim
 /// Position [m] of a body's centre of mass at a time of its present segment.
 fn position_of(assembly: &Assembly, search: &Neighbourhood, body: BodyId, time: Time) -> DVec2 {
     let lane = &search.lanes()[body.index()];
-    let flown = || assembly.flyer(body).moving_at(time).pose.position;
+    let flown = || assembly.trajectory(body).moving_at(time).pose.position;
     if lane.kind() == LaneKind::Other {
         return flown();
     }
@@ -129,8 +130,8 @@ fn collect_pair(view: &View<'_>, region: &mut Region, [first, second]: &[Moment<
     let takes_over = region.cause.run_off().is_some_and(|run_off| run_off.bodies == bodies);
     fresh.retain(|record| {
         counts_as_touching(view, record, bodies, region.cause == Cause::Start, takes_over)
-            && (!(is_passed_over(view.assembly, record)
-                || is_grazing(view.assembly, view.connectors, record))
+            && (!(is_ghost_corner(view.assembly, record)
+                || is_near_dead_point(view.assembly, view.connectors, record))
                 || is_carried(view.assembly, view.groups, record))
     });
     // A contact that has fired takes part, and one that is put back at a tick, though it may have been moved out of
@@ -197,9 +198,9 @@ pub(crate) fn passes_by(search: &Neighbourhood, record: &Collision) -> bool {
     if record.parties.detector != Detector::CornerCorner {
         return false;
     }
-    let halo = |body: BodyId| search.lanes()[body.index()].halo();
-    let halos = halo(record.parties.primary.body).min(halo(record.parties.normal.body));
+    let trigger_gap = |body: BodyId| search.lanes()[body.index()].trigger_gap();
+    let trigger_gaps = trigger_gap(record.parties.primary.body).min(trigger_gap(record.parties.normal.body));
     let (along, across) = (record.motion.normal_velocity, record.motion.lateral_velocity);
     let nearest = record.geometry.distance * across.abs() / libm::hypot(along, across);
-    nearest > halos.min(record.tolerances.target_gap)
+    nearest > trigger_gaps.min(record.tolerances.target_gap)
 }

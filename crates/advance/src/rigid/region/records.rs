@@ -29,7 +29,7 @@ fn remeasure_record(assembly: &Assembly, connectors: &Connectors, record: &mut C
     let sides = [record.parties.primary, record.parties.normal];
     let (Some(primary), Some(normal)) = (sides[0].feature(), sides[1].feature()) else { return };
     let moving = sides.map(|side| assembly.moving_at(side.body, time));
-    let shape = |side: usize| &assembly.flyer(sides[side].body).body().shape;
+    let shape = |side: usize| &assembly.trajectory(sides[side].body).body().shape;
     let (primary, normal) = (shape(0).feature(primary), shape(1).feature(normal));
     let sample = GapSample::measure(primary, &moving[0].pose, normal, &moving[1].pose);
     if let Some(sample) = sample {

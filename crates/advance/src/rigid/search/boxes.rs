@@ -4,8 +4,8 @@
 //! neighbours found: many make it shrink, few make it grow, between bounds that depend on the body's size. The box of a
 //! body in flight has most of its room ahead.
 
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::path::Path;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::search::lane::Lane;
 use crate::time::Time;
 use glam::DVec2;
@@ -44,16 +44,16 @@ impl Room {
     }
 
     /// Box around the body and its room at a time.
-    pub(crate) fn fat_box(&self, lane: &Lane, flyer: &Flyer, time: Time) -> Aabb {
+    pub(crate) fn fat_box(&self, lane: &Lane, trajectory: &Trajectory, time: Time) -> Aabb {
         if lane.is_at_rest {
-            return flyer.body().shape.bounds_at(&flyer.moving_at(time).pose).grown(self.skin);
+            return trajectory.body().shape.bounds_at(&trajectory.moving_at(time).pose).grown(self.skin);
         }
         let center = match lane.flight_from(time) {
             Some(path) => path.position + self.ahead(path.velocity),
             None => {
-                let state = flyer.state_at(time);
+                let state = trajectory.state_at(time);
                 // Of a body that does not fly only a bound on the speed is known: it has as much room on all sides.
-                let ahead = flyer.flight().map_or(DVec2::ZERO, |_| self.ahead(state.velocity));
+                let ahead = trajectory.flight().map_or(DVec2::ZERO, |_| self.ahead(state.velocity));
                 state.position + ahead
             }
         };
@@ -75,7 +75,13 @@ impl Room {
     }
 
     /// Time before which the body surely stays in the given box; `None` if it stays for as long as its motion is known.
-    pub(crate) fn stays_until(&self, lane: &Lane, flyer: &Flyer, fat_box: &Aabb, time: Time) -> Option<Time> {
+    pub(crate) fn stays_until(
+        &self,
+        lane: &Lane,
+        trajectory: &Trajectory,
+        fat_box: &Aabb,
+        time: Time,
+    ) -> Option<Time> {
         if lane.is_at_rest {
             return None;
         }
@@ -87,12 +93,12 @@ impl Room {
         if let Some(path) = lane.flight_from(time) {
             return leaving_time(&path, &core).map(|wait| time.plus(wait));
         }
-        let offset = flyer.offset(time);
+        let offset = trajectory.offset(time);
         let slack = || {
-            let position = flyer.path().state_at(offset).position;
+            let position = trajectory.path().state_at(offset).position;
             (position - core.min).min(core.max - position).min_element().max(0.0)
         };
-        match flyer.path() {
+        match trajectory.path() {
             Path::Flight(flight) => {
                 let by_axes = damped_leaving_time(flight, offset, &core)?;
                 Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))

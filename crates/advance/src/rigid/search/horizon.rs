@@ -39,7 +39,7 @@ impl Searching<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::contacts::pairs::Prediction;
     use crate::rigid::event::intervention::VelocityChange;
 
@@ -66,7 +66,7 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let (position, velocity) = (DVec2::new(x, 0.0), DVec2::new(speed, 0.0));
             let state = BodyState { position, velocity, ..BodyState::default() };
-            BodyPart { body, law: FlightLaw::default(), state }
+            BodyPart { body, free_motion: FreeMotion::default(), state }
         });
         let parts = RigidParts { bodies: Vec::from(bodies), ..RigidParts::default() };
         RigidSystem::new(parts, FINE, Time::ZERO).expect("nothing rests")

@@ -4,8 +4,8 @@
 //! An event reads these for every neighbour of its bodies, and need not load the bodies themselves: memory is slower
 //! than the computation.
 
-use crate::rigid::bodies::flyer::Flyer;
 use crate::rigid::bodies::path::Path;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial};
@@ -40,7 +40,7 @@ pub(crate) struct Lane {
     /// Radius [m] of a disc about the centre of mass; 0 for any other body.
     pub(super) radius: f64,
     /// Gap [m] at which the body fires.
-    pub(super) halo: f64,
+    pub(super) trigger_gap: f64,
     /// Without a parabola: largest distance [m] of the centre of mass from `position` during the segment, beyond that
     /// which `velocity` and `acceleration` make.
     pub(super) course: f64,
@@ -59,36 +59,36 @@ pub(crate) struct Course {
 
 impl Lane {
     /// Sets the gap [m] at which the body fires.
-    pub(super) fn set_halo(&mut self, halo: f64) {
-        self.halo = halo;
+    pub(super) fn set_trigger_gap(&mut self, trigger_gap: f64) {
+        self.trigger_gap = trigger_gap;
     }
 
     /// The lane of a body that stays in its box for ever and fires at a gap [m].
-    pub(crate) fn new(flyer: &Flyer, halo: f64) -> Self {
+    pub(crate) fn new(trajectory: &Trajectory, trigger_gap: f64) -> Self {
         let mut lane = Self {
             position: DVec2::ZERO,
             velocity: DVec2::ZERO,
             start: Time::ZERO,
             stay: Time::NEVER,
             acceleration: DVec2::ZERO,
-            reach: flyer.reach(),
-            radius: flyer.disc().unwrap_or(0.0),
-            halo,
+            reach: trajectory.reach(),
+            radius: trajectory.disc().unwrap_or(0.0),
+            trigger_gap,
             course: f64::INFINITY,
             kind: LaneKind::Other,
             is_at_rest: false,
         };
-        lane.follow(flyer);
+        lane.follow(trajectory);
         lane
     }
 
     /// Copies the present motion of the body.
-    pub(crate) fn follow(&mut self, flyer: &Flyer) {
-        self.is_at_rest = flyer.is_at_rest();
-        let Some(parabola) = flyer.flight().and_then(Flight::parabola) else {
+    pub(crate) fn follow(&mut self, trajectory: &Trajectory) {
+        self.is_at_rest = trajectory.is_at_rest();
+        let Some(parabola) = trajectory.flight().and_then(Flight::parabola) else {
             self.kind = LaneKind::Other;
-            self.start = flyer.start();
-            match flyer.path() {
+            self.start = trajectory.start();
+            match trajectory.path() {
                 Path::Dense(dense) => {
                     let stay = dense.center_box();
                     (self.position, self.course) = (stay.center(), 0.5 * stay.size().length());
@@ -103,8 +103,8 @@ impl Lane {
         };
         let Polynomial { position, velocity, acceleration } = parabola;
         (self.position, self.velocity, self.acceleration) = (position, velocity, acceleration);
-        self.start = flyer.start();
-        self.kind = if flyer.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
+        self.start = trajectory.start();
+        self.kind = if trajectory.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
     }
 
     /// A disc in which the centre of mass stays from a time on, for a span [s] within its segment.
@@ -150,8 +150,8 @@ impl Lane {
     // getters of Lane
     /// Gap [m] at which the body fires.
     #[inline]
-    pub(crate) fn halo(&self) -> f64 {
-        self.halo
+    pub(crate) fn trigger_gap(&self) -> f64 {
+        self.trigger_gap
     }
 
     /// The kind.
@@ -176,30 +176,30 @@ impl Lane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::contacts::pairs::Pair;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::{Body, BodyId, BodyState};
     use halfgap_geometry::Shape;
 
-    fn thrown(linear_rate: f64) -> Flyer {
+    fn thrown(linear_rate: f64) -> Trajectory {
         let shape = Shape::disc(0.7).expect("a fine radius");
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
-        let law = FlightLaw { acceleration: DVec2::new(0.1, -9.81), linear_rate, angular_rate: 0.0 };
+        let law = FreeMotion { acceleration: DVec2::new(0.1, -9.81), linear_rate, angular_rate: 0.0 };
         let (position, velocity) = (DVec2::new(1.0 / 3.0, 2.0), DVec2::new(-0.7, 1.1));
         let state = BodyState { position, velocity, angular_velocity: 3.0, ..BodyState::default() };
-        Flyer::new(body, law, state, Time::from_seconds(1.1))
+        Trajectory::new(body, law, state, Time::from_seconds(1.1))
     }
 
     #[test]
     fn a_lane_says_to_the_bit_what_its_body_says() {
-        let flyer = thrown(0.0);
-        let lane = Lane::new(&flyer, 0.0);
+        let trajectory = thrown(0.0);
+        let lane = Lane::new(&trajectory, 0.0);
         assert_eq!(lane.kind, LaneKind::Disc);
         for time in [1.1, 1.3, 7.9, 0.2].map(Time::from_seconds) {
-            let offset = flyer.offset(time);
-            assert_eq!(lane.position_at(time), flyer.state_at(time).position);
-            let expected = flyer.flight().and_then(|flight| flight.polynomial_from(offset));
+            let offset = trajectory.offset(time);
+            assert_eq!(lane.position_at(time), trajectory.state_at(time).position);
+            let expected = trajectory.flight().and_then(|flight| flight.polynomial_from(offset));
             assert_eq!(Some(lane.parabola_from(time)), expected);
         }
     }
@@ -212,11 +212,11 @@ mod tests {
     #[test]
     fn a_course_holds_the_flight_damped_or_not() {
         for linear_rate in [0.0, 0.3, 30.0] {
-            let flyer = thrown(linear_rate);
+            let trajectory = thrown(linear_rate);
             let start = Time::from_seconds(1.3);
-            let course = Lane::new(&flyer, 0.0).course_from(start, 0.5);
+            let course = Lane::new(&trajectory, 0.0).course_from(start, 0.5);
             for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
-                let position = flyer.state_at(start.plus(0.5 * part)).position;
+                let position = trajectory.state_at(start.plus(0.5 * part)).position;
                 assert!((position - course.center).length() <= course.radius);
             }
             assert!(course.radius < 6.0, "{} m", course.radius);
@@ -226,15 +226,15 @@ mod tests {
     #[test]
     fn a_course_holds_what_an_integrator_finds() {
         let rooms = resting_discs(&[0.0]);
-        let (flyer, lane) = (rooms.assembly.flyer(BodyId(1)), &rooms.search.lanes[1]);
+        let (trajectory, lane) = (rooms.assembly.trajectory(BodyId(1)), &rooms.search.lanes[1]);
         assert_eq!(lane.kind, LaneKind::Other);
-        let course = lane.course_from(flyer.start(), 1e-3);
-        let position = flyer.state_at(flyer.start().plus(1e-3)).position;
+        let course = lane.course_from(trajectory.start(), 1e-3);
+        let position = trajectory.state_at(trajectory.start().plus(1e-3)).position;
         assert!((position - course.center).length() <= course.radius + 1e-15 && course.radius < 1e-3);
     }
 
     #[test]
     fn the_data_that_events_read_fit_into_lines_of_the_cache() {
-        assert_eq!([size_of::<Lane>(), size_of::<Flyer>(), size_of::<Pair>()], [128, 192, 32]);
+        assert_eq!([size_of::<Lane>(), size_of::<Trajectory>(), size_of::<Pair>()], [128, 192, 32]);
     }
 }

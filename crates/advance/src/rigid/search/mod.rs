@@ -5,12 +5,12 @@
 //! nothing that moves a body. It knows no group and no force.
 //!
 //! `searching`: what it works on · `neighbourhood`: its data · `boxes`: a body's room to move · `lane`: a body's motion,
-//! packed · `predictions`: when a pair meets · `horizon`: how far ahead it looks · `ropes` · `flush`: corners that pass
-//! over each other · `graze`: features that turn back before they touch · `marks`: a set of bodies.
+//! packed · `predictions`: when a pair meets · `horizon`: how far ahead it looks · `ropes` · `ghost_corner`: corners
+//! that pass over each other · `dead_point`: features that turn back before they touch · `marks`: a set of bodies.
 
 pub(super) mod boxes;
-pub(super) mod flush;
-pub(super) mod graze;
+pub(super) mod dead_point;
+pub(super) mod ghost_corner;
 pub(super) mod horizon;
 pub(super) mod lane;
 pub(super) mod marks;

@@ -1,7 +1,7 @@
 //! Data of the search for contacts beside the pairs: where bodies may be, which of them may meet, and the first contact
 //! known of each.
 
-use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::contacts::pairs::{Link, PairId};
 use crate::rigid::search::boxes::Room;
 use crate::rigid::search::lane::Lane;
@@ -39,13 +39,13 @@ pub(crate) struct Neighbourhood {
 
 impl Neighbourhood {
     /// Copies the present motion of a body, whose box stays as it is.
-    pub(crate) fn follow(&mut self, flyer: &Flyer, body: BodyId) {
-        self.lanes[body.index()].follow(flyer);
+    pub(crate) fn follow(&mut self, trajectory: &Trajectory, body: BodyId) {
+        self.lanes[body.index()].follow(trajectory);
     }
 
     /// Sets the gap [m] at which a body fires.
-    pub(crate) fn set_halo(&mut self, body: BodyId, halo: f64) {
-        self.lanes[body.index()].set_halo(halo);
+    pub(crate) fn set_trigger_gap(&mut self, body: BodyId, trigger_gap: f64) {
+        self.lanes[body.index()].set_trigger_gap(trigger_gap);
     }
 
     /// Takes out the buffer of pairs.
@@ -72,7 +72,7 @@ impl Neighbourhood {
 
     /// Sets up the search for bodies; the broad phase is still empty.
     pub(crate) fn new(
-        flyers: &[Flyer],
+        trajectories: &[Trajectory],
         mut excluded: Vec<(BodyId, BodyId)>,
         settings: &RigidSettings,
     ) -> Self {
@@ -82,11 +82,14 @@ impl Neighbourhood {
         let skin = settings.tolerances.distance_tol();
         let target_gap = settings.tolerances.target_gap;
         Self {
-            lanes: flyers.iter().map(|flyer| Lane::new(flyer, target_gap)).collect(),
-            rooms: flyers.iter().map(|flyer| Room::new(flyer.body().shape.reach(), skin)).collect(),
+            lanes: trajectories.iter().map(|trajectory| Lane::new(trajectory, target_gap)).collect(),
+            rooms: trajectories
+                .iter()
+                .map(|trajectory| Room::new(trajectory.body().shape.reach(), skin))
+                .collect(),
             broad: BroadPhase::new(),
-            first_contacts: vec![Time::NEVER; flyers.len()],
-            loners: loners(flyers.len(), settings.collisions, &excluded),
+            first_contacts: vec![Time::NEVER; trajectories.len()],
+            loners: loners(trajectories.len(), settings.collisions, &excluded),
             excluded,
             deep: Vec::new(),
             touched: Vec::new(),

@@ -32,24 +32,25 @@ impl Searching<'_> {
 
     /// Gives a body a new box around its present motion, and predicts when it leaves that.
     fn place_box(&mut self, body: BodyId) {
-        let (lane, flyer) = (&self.search.lanes[body.index()], self.assembly.flyer(body));
-        let fat_box = self.search.rooms[body.index()].fat_box(lane, flyer, self.assembly.now());
+        let (lane, trajectory) = (&self.search.lanes[body.index()], self.assembly.trajectory(body));
+        let fat_box = self.search.rooms[body.index()].fat_box(lane, trajectory, self.assembly.now());
         self.search.broad.set(body, fat_box);
         self.predict_leaving(body);
     }
 
     /// Takes over the motion of a body, which may be new, and predicts anew when it leaves its box.
     pub(crate) fn renew_stay(&mut self, body: BodyId) {
-        self.search.lanes[body.index()].follow(self.assembly.flyer(body));
+        self.search.lanes[body.index()].follow(self.assembly.trajectory(body));
         self.forget_contacts_ahead(body);
         self.predict_leaving(body);
     }
 
     fn predict_leaving(&mut self, body: BodyId) {
-        let (flyer, room) = (self.assembly.flyer(body), &self.search.rooms[body.index()]);
+        let (trajectory, room) = (self.assembly.trajectory(body), &self.search.rooms[body.index()]);
         let lane = &mut self.search.lanes[body.index()];
         let fat_box = self.search.broad.bounds(body);
-        let stay = fat_box.and_then(|fat_box| room.stays_until(lane, flyer, fat_box, self.assembly.now()));
+        let stay =
+            fat_box.and_then(|fat_box| room.stays_until(lane, trajectory, fat_box, self.assembly.now()));
         lane.stay = stay.unwrap_or(Time::NEVER);
         let source = Source::Box(body);
         match stay {
@@ -63,7 +64,7 @@ impl Searching<'_> {
         let Some(fat_box) = self.search.broad.bounds(body).copied() else { return };
         let mut near = std::mem::take(&mut self.search.neighbours);
         self.search.broad.find_overlapping(&fat_box, &mut near);
-        self.search.marks.begin(self.assembly.flyers().len());
+        self.search.marks.begin(self.assembly.trajectories().len());
         near.iter().for_each(|&other| self.search.marks.set(other));
         self.search.links.clear();
         self.search.links.extend_from_slice(self.pairs.of_body(body));
@@ -120,8 +121,8 @@ impl Searching<'_> {
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
         let lane = &self.search.lanes[body.index()];
         let is_plain = lane.kind == LaneKind::Disc && self.assembly.settings().search.depth == 0.0;
-        let Lane { radius, halo, stay, .. } = *lane;
-        is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, halo, stay })
+        let Lane { radius, trigger_gap, stay, .. } = *lane;
+        is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, trigger_gap, stay })
     }
 
     /// Prediction of a pair of free discs and the time until which they are clear; `None` for other pairs.
@@ -129,7 +130,7 @@ impl Searching<'_> {
     fn look_at_discs(&self, from: Time, own: &DiscAt, link: Link) -> Option<(Prediction, Time)> {
         let lane = &self.search.lanes[link.other.index()];
         let tolerances = self.assembly.settings().tolerances;
-        let is_lowered = own.halo.min(lane.halo) < tolerances.target_gap;
+        let is_lowered = own.trigger_gap.min(lane.trigger_gap) < tolerances.target_gap;
         if lane.kind != LaneKind::Disc || is_lowered || self.pairs.get(link.pair).has_rules() {
             return None;
         }
@@ -194,9 +195,12 @@ impl Searching<'_> {
             return;
         }
         let [a, b] = self.pairs.bodies(pair);
-        let (pose_a, pose_b) =
-            (self.assembly.flyer(a).moving_at(time).pose, self.assembly.flyer(b).moving_at(time).pose);
-        let (shape_a, shape_b) = (&self.assembly.flyer(a).body().shape, &self.assembly.flyer(b).body().shape);
+        let (pose_a, pose_b) = (
+            self.assembly.trajectory(a).moving_at(time).pose,
+            self.assembly.trajectory(b).moving_at(time).pose,
+        );
+        let (shape_a, shape_b) =
+            (&self.assembly.trajectory(a).body().shape, &self.assembly.trajectory(b).body().shape);
         let opened =
             self.assembly.settings().tolerances.target_gap + self.assembly.settings().tolerances.accuracy;
         let is_closed = |rule: &FeatureRule| {
@@ -211,16 +215,17 @@ impl Searching<'_> {
     /// Searches for a contact of two bodies in the given span [s] from a time on.
     fn search_pair(&self, pair: PairId, from: Time, span: f64) -> Search {
         let [a, b] = self.pairs.bodies(pair);
-        let (flyer_a, flyer_b) = (self.assembly.flyer(a), self.assembly.flyer(b));
-        let (offset_a, offset_b) = (flyer_a.offset(from), flyer_b.offset(from));
+        let (trajectory_a, trajectory_b) = (self.assembly.trajectory(a), self.assembly.trajectory(b));
+        let (offset_a, offset_b) = (trajectory_a.offset(from), trajectory_b.offset(from));
         let rules = self.pairs.rules(pair);
-        let target_gap = self.search.lanes[a.index()].halo.min(self.search.lanes[b.index()].halo);
+        let target_gap =
+            self.search.lanes[a.index()].trigger_gap.min(self.search.lanes[b.index()].trigger_gap);
         let tolerances = Tolerances { target_gap, ..self.assembly.settings().tolerances };
         let sunk = may_have_sunk_by(self.assembly, self.sinking, [a, b]);
-        let shapes = [&flyer_a.body().shape, &flyer_b.body().shape];
-        let (Some(flight_a), Some(flight_b)) = (flyer_a.flight(), flyer_b.flight()) else {
-            let path_a: Path<'_> = flyer_a.path();
-            let path_b: Path<'_> = flyer_b.path();
+        let shapes = [&trajectory_a.body().shape, &trajectory_b.body().shape];
+        let (Some(flight_a), Some(flight_b)) = (trajectory_a.flight(), trajectory_b.flight()) else {
+            let path_a: Path<'_> = trajectory_a.path();
+            let path_b: Path<'_> = trajectory_b.path();
             let side_a = MovingShape { shape: shapes[0], motion: &path_a, offset: offset_a };
             let side_b = MovingShape { shape: shapes[1], motion: &path_b, offset: offset_b };
             return self.search_shapes(&side_a, &side_b, (rules, &tolerances), sunk, span);
@@ -277,7 +282,7 @@ struct DiscAt {
     /// Radius [m].
     radius: f64,
     /// Gap [m] at which it fires.
-    halo: f64,
+    trigger_gap: f64,
     /// Time until which it surely stays in its box.
     stay: Time,
 }
@@ -307,7 +312,7 @@ fn look_ahead(
 mod tests {
 
     use super::*;
-    use crate::rigid::bodies::flyer::FlightLaw;
+    use crate::rigid::bodies::trajectory::FreeMotion;
 
     use crate::rigid::group::groups::group_of;
 
@@ -337,14 +342,14 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let (position, velocity) = (DVec2::new(side, 0.1 * side), DVec2::new(-side, 0.0));
             let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
-            BodyPart { body, law: FlightLaw::default(), state }
+            BodyPart { body, free_motion: FreeMotion::default(), state }
         };
         let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::from_seconds(10.0));
         let pair = rooms.pairs.between(BodyId(0), BodyId(1)).expect("they are near each other");
         let expected = rooms.pairs.get(pair).clear();
         for lowered in [0.4, 0.0, -1.0, -4.4] {
-            rooms.search.lanes[0].halo = lowered * FINE.tolerances.target_gap;
+            rooms.search.lanes[0].trigger_gap = lowered * FINE.tolerances.target_gap;
             rooms.searching().predict_all_of(&[BodyId(0)], true);
             let entry = rooms.pairs.get(pair);
             let (prediction, clear) = (entry.prediction(), entry.clear());

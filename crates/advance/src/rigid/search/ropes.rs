@@ -3,7 +3,7 @@
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::path::Path;
 use crate::rigid::connectors::store::{rope_of, slack_of};
-use crate::rigid::search::graze::{grazing_slack, rope_grazes};
+use crate::rigid::search::dead_point::{dead_point_slack, rope_is_near_dead_point};
 use crate::rigid::search::predictions::LONGEST_SPAN;
 use crate::rigid::search::searching::Searching;
 use crate::time::Time;
@@ -88,7 +88,7 @@ impl Searching<'_> {
             if body.is_world() {
                 (Path::Flight(&still), 0.0)
             } else {
-                (self.assembly.flyer(body).path(), self.assembly.flyer(body).offset(from))
+                (self.assembly.trajectory(body).path(), self.assembly.trajectory(body).offset(from))
             }
         };
         let ((path_a, offset_a), (path_b, offset_b)) = (path(a), path(b));
@@ -126,10 +126,10 @@ impl Searching<'_> {
     pub(crate) fn rope_fires(&mut self, id: ConnectorId) -> bool {
         let now = self.assembly.now();
         let is_taut = self.connectors.states()[id.index()].taut().is_some();
-        let slack = grazing_slack(self.assembly);
+        let slack = dead_point_slack(self.assembly);
         if is_taut
             && self.connectors.states()[id.index()].slack() < slack
-            && rope_grazes(self.assembly, self.connectors, id)
+            && rope_is_near_dead_point(self.assembly, self.connectors, id)
         {
             self.connectors.set_slack(id, slack);
         } else if is_taut {

@@ -109,7 +109,7 @@ pub(crate) const DEEP_SHARE: f64 = 0.3;
 #[inline]
 pub(crate) fn room_to_sink(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
     let Some(step) = assembly.settings().impulse_step else { return 0.0 };
-    let reach = bodies.map(|body| assembly.flyer(body).reach());
+    let reach = bodies.map(|body| assembly.trajectory(body).reach());
     let Tolerances { accuracy, velocity_tol, .. } = assembly.settings().tolerances;
     let of_bodies = (SUNK_SHARE * reach[0].min(reach[1])).min(assembly.thinness(bodies));
     // Contacts may be anywhere in the target zone, and sink from there: a first firing lies no higher than its end.

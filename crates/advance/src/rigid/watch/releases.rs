@@ -143,7 +143,7 @@ fn find_least_forces(dynamics: &mut Dynamics<'_>) {
     let count = group.bodies().len();
     let loads = group.bodies().iter().enumerate().map(|(place, &body)| {
         let at = 3 * (count + place);
-        dynamics.physics.mechanism.flyers[body.index()].load(&group.rates()[at..at + 3])
+        dynamics.physics.mechanism.trajectories[body.index()].load(&group.rates()[at..at + 3])
     });
     dynamics.stage.set_least_forces(FORCE_SHARE, group, loads);
 }

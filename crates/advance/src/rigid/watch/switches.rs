@@ -170,8 +170,8 @@ fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::find_switch;
-    use crate::rigid::bodies::flyer::FlightLaw;
     use crate::rigid::bodies::law::{ForceLaw, Snapshot, Wrenches};
+    use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::group::groups::with_group;
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::test_scene::{FINE, rooms_of};
@@ -215,7 +215,7 @@ mod tests {
         let body = BodyId(0);
         let shape = Shape::disc(0.5).expect("a fine radius");
         let disc = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
-        let disc = BodyPart { body: disc, law: FlightLaw::default(), state: BodyState::default() };
+        let disc = BodyPart { body: disc, free_motion: FreeMotion::default(), state: BodyState::default() };
         let clock = Clock { rings: later.seconds() + delay, bodies: [body] };
         let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(clock)], ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::ZERO);

@@ -62,7 +62,7 @@ fn turns_without_end(assembly: &Assembly, zeno: &Zeno, group: &Group, step: f64)
             body_state(group.state(), group.bodies().len(), place);
         // One that swings to and fro does not get anywhere; one that turns more than once in a step is not
         // followed.
-        let mean = assembly.flyer(body).with_turns(angle).abs() / elapsed;
+        let mean = assembly.trajectory(body).with_turns(angle).abs() / elapsed;
         let is_followed = angular_velocity.abs() * step < TAU;
         let spin = mean.min(angular_velocity.abs()).copysign(angular_velocity);
         if is_followed { too_fast(zeno, body, spin, group.start()) } else { None }

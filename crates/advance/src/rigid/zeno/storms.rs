@@ -93,8 +93,8 @@ fn is_costly(assembly: &Assembly, (bodies, records): (&[BodyId], &[Collision])) 
         if inverse_mass > 0.0 { 0.5 * rate * rate / inverse_mass } else { 0.0 }
     });
     let moving = bodies.iter().map(|&body| {
-        let flyer = assembly.flyer(body);
-        flyer.body().kinetic_energy(&flyer.state_at(assembly.now()))
+        let trajectory = assembly.trajectory(body);
+        trajectory.body().kinetic_energy(&trajectory.state_at(assembly.now()))
     });
     closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
 }

@@ -1,6 +1,6 @@
 //! Construction of the tree of a group from its pins.
 
-use crate::rigid::bodies::flyer::Flyer;
+use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::contacts::rows::{HeldRow, Mechanism, RowSource, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::Group;
@@ -57,7 +57,7 @@ impl Dynamics<'_> {
         tree.link_of.clear();
         tree.link_of.resize(bodies.len(), None);
         let place = |anchor: &Anchor| bodies.binary_search(&anchor.body).ok();
-        let flyer = |place: usize| &mechanism.flyers[bodies[place].index()];
+        let trajectory = |place: usize| &mechanism.trajectories[bodies[place].index()];
         let pin_before = |second: usize| Some((second, pin_of(&rows[second - 1..=second], mechanism)?));
         let pins = (1..rows.len()).filter_map(pin_before);
         while tree.links.len() < bodies.len() {
@@ -78,13 +78,13 @@ impl Dynamics<'_> {
                             None => continue,
                         },
                     };
-                    tree.hang(own_place, hinge, own.point, flyer(own_place));
+                    tree.hang(own_place, hinge, own.point, trajectory(own_place));
                     tree.hung.extend([second - 1, second]);
                 }
             }
             if tree.links.len() == before {
                 let Some(free) = tree.link_of.iter().position(Option::is_none) else { break };
-                tree.hang(free, Hinge::Free, DVec2::ZERO, flyer(free));
+                tree.hang(free, Hinge::Free, DVec2::ZERO, trajectory(free));
             }
         }
         let JointTree { hung, loop_rows, links, .. } = &mut *tree;
@@ -101,13 +101,13 @@ impl Dynamics<'_> {
 }
 
 impl JointTree {
-    fn hang(&mut self, place: usize, hinge: Hinge, own: DVec2, flyer: &Flyer) {
+    fn hang(&mut self, place: usize, hinge: Hinge, own: DVec2, trajectory: &Trajectory) {
         self.link_of[place] = Some(self.links.len());
         self.numbers.0.push(3 * place + 2);
         if hinge == Hinge::Free {
             self.numbers.0.extend([3 * place, 3 * place + 1]);
         }
-        let (body, reach) = (flyer.body(), flyer.reach() + own.length());
+        let (body, reach) = (trajectory.body(), trajectory.reach() + own.length());
         self.links.push(Link {
             place,
             hinge,

@@ -1,7 +1,7 @@
 //! Accelerations and forces of trees agree with those of the rows of their pins.
 
 use super::build::MOST_BESIDE;
-use crate::rigid::bodies::flyer::{FlightLaw, Flyer};
+use crate::rigid::bodies::trajectory::{FreeMotion, Trajectory};
 use crate::rigid::contacts::rows::{HeldRow, Mechanism, RowSource};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::physics::Physics;
@@ -62,7 +62,7 @@ fn hung() -> impl Strategy<Value = Hung> {
 
 /// The bodies of a tree with its connectors; bodies are numbered backwards.
 struct Scene {
-    flyers: Vec<Flyer>,
+    trajectories: Vec<Trajectory>,
     connectors: Vec<Connector>,
     group: Group,
 }
@@ -92,17 +92,17 @@ impl Scene {
             }
             states.push(state);
         }
-        let flyer = |(body, state): (&Hung, &BodyState)| {
+        let trajectory = |(body, state): (&Hung, &BodyState)| {
             let shape = Shape::block(1.0, 0.4).expect("a fine block");
             let inverse_mass = body.mass.recip();
             let body = Body { shape, inverse_mass, inverse_moment: 3.0 * inverse_mass, elasticity: 0.5 };
-            let law = FlightLaw { acceleration: GRAVITY, ..FlightLaw::default() };
-            Flyer::new(body, law, *state, Time::ZERO)
+            let law = FreeMotion { acceleration: GRAVITY, ..FreeMotion::default() };
+            Trajectory::new(body, law, *state, Time::ZERO)
         };
-        let mut flyers: Vec<_> = hung.iter().zip(&states).map(flyer).collect();
-        flyers.reverse();
+        let mut trajectories: Vec<_> = hung.iter().zip(&states).map(trajectory).collect();
+        trajectories.reverse();
         let connectors = connectors.into_iter().map(|kind| Connector::new(kind, 0.0).expect("a fine pin"));
-        let mut scene = Self { flyers, connectors: connectors.collect(), group: Group::default() };
+        let mut scene = Self { trajectories, connectors: connectors.collect(), group: Group::default() };
         for connector in 0..scene.connectors.len() {
             scene.hold(connector);
         }
@@ -111,11 +111,11 @@ impl Scene {
 
     /// Adds a connector between the first and the last body.
     fn connect(&mut self, kind: impl FnOnce([Anchor; 2]) -> ConnectorKind) {
-        let last = self.flyers.len() - 1;
+        let last = self.trajectories.len() - 1;
         let ids = [BodyId(0), BodyId(u32::try_from(last).expect("few bodies"))];
         let point = DVec2::new(0.2, 0.1);
         let anchors = ids.map(|body| {
-            let pose = self.flyers[body.index()].state_at(Time::ZERO).pose();
+            let pose = self.trajectories[body.index()].state_at(Time::ZERO).pose();
             Anchor { body, point: pose.point_to_body(point) }
         });
         self.connectors.push(Connector::new(kind(anchors), 0.0).expect("a fine connector"));
@@ -135,21 +135,21 @@ impl Scene {
 
     /// Makes a group of all bodies and acts on its dynamics.
     fn with_dynamics<T>(mut self, act: impl FnOnce(&mut Dynamics<'_>) -> T) -> T {
-        let count = self.flyers.len();
-        let Self { flyers, connectors, group } = &mut self;
+        let count = self.trajectories.len();
+        let Self { trajectories, connectors, group } = &mut self;
         group.bodies = (0..count).map(|place| BodyId(u32::try_from(place).expect("few bodies"))).collect();
         group.find_sides();
-        let inertia = |flyer: &Flyer| InverseInertia {
-            inverse_mass: flyer.body().inverse_mass,
-            inverse_moment: flyer.body().inverse_moment,
+        let inertia = |trajectory: &Trajectory| InverseInertia {
+            inverse_mass: trajectory.body().inverse_mass,
+            inverse_moment: trajectory.body().inverse_moment,
         };
-        let inertias: Vec<_> = flyers.iter().map(inertia).collect();
+        let inertias: Vec<_> = trajectories.iter().map(inertia).collect();
         group.held.set_structure(&inertias, &group.sides);
         group.state = vec![0.0; 6 * count];
-        for (place, flyer) in flyers.iter().enumerate() {
-            set_body_state(&mut group.state, count, place, &flyer.state_at(Time::ZERO));
+        for (place, trajectory) in trajectories.iter().enumerate() {
+            set_body_state(&mut group.state, count, place, &trajectory.state_at(Time::ZERO));
         }
-        let mechanism = Mechanism { flyers, connectors, tolerances: &TOLERANCES };
+        let mechanism = Mechanism { trajectories, connectors, tolerances: &TOLERANCES };
         let remedies = &Remedies::new(RemedySet::NONE);
         let physics =
             Physics { mechanism, laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };

@@ -1,4 +1,4 @@
-//! Contacts that graze: features that come nearer than the gap at which bodies fire, and turn back before they touch.
+//! Contacts near a dead point: features that come nearer than the gap at which bodies fire, and turn back before they touch.
 //!
 //! Near a dead point of a mechanism held by connectors, a part of a body comes towards another at a speed that vanishes
 //! with the gap: the corner beside the hinge of a lid that falls shut, a bob that just clears the floor, a slider at
@@ -24,19 +24,20 @@ const DEPTH: f64 = 0.9 * DEEPEST;
 const SEEMING: f64 = 2.0;
 
 impl Searching<'_> {
-    /// True if two features that fire only graze: the search lets them come down to the least grazing gap from now on.
-    pub(crate) fn grazes(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
+    /// True if two features that fire turn back at a dead point: the search lets them come down to the least gap of
+    /// such from now on.
+    pub(crate) fn turns_back(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let touch = Touch { bodies: self.pairs.bodies(pair), features };
-        let most = grazing_gap(self.assembly, touch.bodies);
+        let most = dead_point_gap(self.assembly, touch.bodies);
         let has_come =
             |rule: &FeatureRule| rule.features == features && rule.target.is_some_and(|gap| gap <= most);
         if self.pairs.rules(pair).iter().any(has_come) || !turns_back(self.assembly, self.connectors, touch) {
             return false;
         }
-        if !self.assembly.remedies().act(Remedy::Grazing) {
+        if !self.assembly.remedies().act(Remedy::DeadPoints) {
             return false;
         }
-        let rule = touch.lowered_to(least_grazing_gap(self.assembly, touch.bodies));
+        let rule = touch.lowered_to(least_dead_point_gap(self.assembly, touch.bodies));
         self.pairs.change_rules(pair, |rules| {
             // Of several rules for the same features the first counts.
             rules.retain(|rule| rule.features != features);
@@ -47,30 +48,30 @@ impl Searching<'_> {
     }
 }
 
-/// True if the features of a record close, and only graze.
-pub(crate) fn is_grazing(assembly: &Assembly, connectors: &Connectors, record: &Collision) -> bool {
+/// True if the features of a record close, and turn back at a dead point.
+pub(crate) fn is_near_dead_point(assembly: &Assembly, connectors: &Connectors, record: &Collision) -> bool {
     record.motion.normal_velocity < -assembly.rest_speed()
         && Touch::of(record).is_some_and(|touch| turns_back(assembly, connectors, touch))
-        && assembly.remedies().act(Remedy::Grazing)
+        && assembly.remedies().act(Remedy::DeadPoints)
 }
 
 /// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
 /// bodies do not visibly overlap.
-pub(crate) fn grazing_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
+pub(crate) fn dead_point_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
     if assembly.is_zone_seen(bodies) { 0.0 } else { -DEPTH * assembly.settings().tolerances.target_gap }
 }
 
 /// True if features, one of them on a body held by connectors, part again in their present motion before they come
 /// to the least grazing gap.
 fn turns_back(assembly: &Assembly, connectors: &Connectors, touch: Touch) -> bool {
-    let least = least_grazing_gap(assembly, touch.bodies);
+    let least = least_dead_point_gap(assembly, touch.bodies);
     let Some(corners) = corners_of(assembly, touch) else {
         return parts_again(assembly, connectors, touch.bodies, least, |time| gap_at(assembly, touch, time));
     };
     // The distance of two corners that run into each other is never negative: it would grow again.
     let apart = |time: Time| {
         let [a, b] = [0, 1].map(|side: usize| {
-            let moving = assembly.flyer(touch.bodies[side]).moving_at(time);
+            let moving = assembly.trajectory(touch.bodies[side]).moving_at(time);
             let arm = moving.pose.vector_to_world(corners[side]);
             (moving.pose.position + arm, moving.velocity_at(arm))
         });
@@ -85,7 +86,7 @@ fn turns_back(assembly: &Assembly, connectors: &Connectors, touch: Touch) -> boo
 
 /// Positions [m] of two sharp corners that touch, each in its body's coordinates; `None` for other features.
 fn corners_of(assembly: &Assembly, Touch { bodies, features }: Touch) -> Option<[DVec2; 2]> {
-    let corner = |side: usize| match assembly.flyer(bodies[side]).body().shape.feature(features[side]) {
+    let corner = |side: usize| match assembly.trajectory(bodies[side]).body().shape.feature(features[side]) {
         Feature::Round(round) if round.radius == 0.0 => Some(round.center),
         _ => None,
     };
@@ -94,27 +95,27 @@ fn corners_of(assembly: &Assembly, Touch { bodies, features }: Touch) -> Option<
 
 /// Gap [m] to which grazing features may seem to come: between the ends of a step dense output has bodies off their
 /// held rows, which is no real depth.
-fn least_grazing_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
+fn least_dead_point_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
     let errors =
         bodies.iter().filter_map(|&body| assembly.shared_by(body)).map(|shared| shared.largest_error);
-    grazing_gap(assembly, bodies) - SEEMING * errors.sum::<f64>()
+    dead_point_gap(assembly, bodies) - SEEMING * errors.sum::<f64>()
 }
 
 /// True if a rope, one end of which other connectors hold, too, is slack again in its present motion before it is
 /// longer by the grazing slack.
-pub(crate) fn rope_grazes(assembly: &Assembly, connectors: &Connectors, id: ConnectorId) -> bool {
+pub(crate) fn rope_is_near_dead_point(assembly: &Assembly, connectors: &Connectors, id: ConnectorId) -> bool {
     let connector = connectors.connector(id);
     let bodies = connector.bodies();
-    let grazes = parts_again(assembly, connectors, bodies, -grazing_slack(assembly), |time| {
+    let turns_back = parts_again(assembly, connectors, bodies, -dead_point_slack(assembly), |time| {
         let [a, b] = bodies.map(|body| assembly.moving_at(body, time));
         let sample = connector.measure(0, &a, &b);
         (sample.gap, sample.kinematics.rate)
     });
-    grazes && assembly.remedies().act(Remedy::Grazing)
+    turns_back && assembly.remedies().act(Remedy::DeadPoints)
 }
 
 /// Excess length [m] that a grazing rope is given.
-pub(crate) fn grazing_slack(assembly: &Assembly) -> f64 {
+pub(crate) fn dead_point_slack(assembly: &Assembly) -> f64 {
     DEPTH * assembly.settings().tolerances.target_gap
 }
 

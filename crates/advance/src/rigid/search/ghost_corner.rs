@@ -60,7 +60,7 @@ impl Searching<'_> {
         }
         let bodies = self.pairs.bodies(pair);
         let Some(passing) = passing_features(self.assembly, bodies, features) else { return false };
-        if !self.assembly.remedies().act(Remedy::CornersPassOver) {
+        if !self.assembly.remedies().act(Remedy::GhostCorners) {
             return false;
         }
         self.pairs.change_rules(pair, |rules| {
@@ -76,21 +76,21 @@ impl Searching<'_> {
 }
 
 /// True if the features of a record are those of corners that pass over each other.
-pub(crate) fn is_passed_over(assembly: &Assembly, record: &Collision) -> bool {
+pub(crate) fn is_ghost_corner(assembly: &Assembly, record: &Collision) -> bool {
     record.motion.normal_velocity < -assembly.rest_speed()
         && Touch::of(record)
             .is_some_and(|touch| passing_features(assembly, touch.bodies, touch.features).is_some())
-        && assembly.remedies().act(Remedy::CornersPassOver)
+        && assembly.remedies().act(Remedy::GhostCorners)
 }
 
 /// Pairs of features of two corners that pass over each other, where the given features are one of them; `None` if
 /// there are no such corners.
 fn passing_features(assembly: &Assembly, bodies: [BodyId; 2], features: [FeatureId; 2]) -> Option<Passing> {
-    if bodies.iter().any(|&body| assembly.flyer(body).disc().is_some()) {
+    if bodies.iter().any(|&body| assembly.trajectory(body).disc().is_some()) {
         return None;
     }
     let corners = [0, 1].map(|side: usize| {
-        let moving = assembly.flyer(bodies[side]).moving_at(assembly.now());
+        let moving = assembly.trajectory(bodies[side]).moving_at(assembly.now());
         corners_at(assembly, bodies[side], &moving, features[side])
     });
     let firsts = corners[0].iter().flatten();
@@ -110,7 +110,7 @@ fn passing_features(assembly: &Assembly, bodies: [BodyId; 2], features: [Feature
 
 /// The corner that a feature is, or those at the ends of the edge that it is.
 fn corners_at(assembly: &Assembly, body: BodyId, moving: &Moving, feature: FeatureId) -> [Option<Corner>; 2] {
-    let shape = &assembly.flyer(body).body().shape;
+    let shape = &assembly.trajectory(body).body().shape;
     let corner = |id: FeatureId| {
         let sides = shape.sides_of(id)?;
         let Feature::Round(round) = shape.feature(id) else { return None };

@@ -12,7 +12,7 @@ const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
 /// Uniform acceleration and linear damping of a body in free flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FlightLaw {
+pub struct FreeMotion {
     /// Uniform acceleration [m/s^2].
     pub acceleration: DVec2,
     /// Damping rate [1/s] of the velocity: damping alone makes it decay by exp(-rate t).
@@ -21,7 +21,7 @@ pub struct FlightLaw {
     pub angular_rate: f64,
 }
 
-impl FlightLaw {
+impl FreeMotion {
     /// True if the body is damped.
     #[must_use]
     #[inline]
@@ -33,7 +33,7 @@ impl FlightLaw {
 /// A body and its segment: its present motion and the start of it.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub struct Flyer {
+pub struct Trajectory {
     start: Time,
     flight: Flight,
     reach: f64,
@@ -48,14 +48,14 @@ pub struct Flyer {
     dense: Option<Box<DensePath>>,
 }
 
-impl Flyer {
-    pub(crate) fn new(body: Body, law: FlightLaw, state: BodyState, time: Time) -> Self {
+impl Trajectory {
+    pub(crate) fn new(body: Body, free_motion: FreeMotion, state: BodyState, time: Time) -> Self {
         // A fixed body does not move, whatever its velocity.
-        let law = if body.is_fixed() { FlightLaw::default() } else { law };
+        let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
         let flight = if body.is_fixed() {
             Flight::fixed(state.position, state.angle)
         } else {
-            Flight::new(state, law.acceleration, law.linear_rate, law.angular_rate)
+            Flight::new(state, free_motion.acceleration, free_motion.linear_rate, free_motion.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
         Self { start: time, flight, reach, disc, body, turns: 0.0, is_integrated: false, dense: None }
@@ -71,9 +71,9 @@ impl Flyer {
     /// Acceleration and damping of the body in free flight.
     #[must_use]
     #[inline]
-    pub fn law(&self) -> FlightLaw {
+    pub fn free_motion(&self) -> FreeMotion {
         let (acceleration, [linear_rate, angular_rate]) = (self.flight.acceleration(), self.flight.rates());
-        FlightLaw { acceleration, linear_rate, angular_rate }
+        FreeMotion { acceleration, linear_rate, angular_rate }
     }
 
     /// State of the body at a time of the present segment, in the world frame; its angle [rad] includes whole turns.
@@ -211,16 +211,16 @@ mod tests {
         for angle in [0.3, -4.0, 12_345.678, -4_618.926_598_942_698, 1e9] {
             let start = Time::from_seconds(2.0);
             let state = BodyState { angle, angular_velocity: 3.0, ..BodyState::default() };
-            let mut flyer = Flyer::new(body.clone(), FlightLaw::default(), state, start);
+            let mut trajectory = Trajectory::new(body.clone(), FreeMotion::default(), state, start);
             let later = start.plus(0.25);
-            let before = flyer.moving_at(later).pose.rotation;
+            let before = trajectory.moving_at(later).pose.rotation;
             // The second time there is no turn left to take out.
             for _ in 0..2 {
-                flyer.unwind();
-                assert_eq!(flyer.state_at(start).angle, angle);
-                assert!(flyer.unwound_at(start).angle.abs() <= TAU);
+                trajectory.unwind();
+                assert_eq!(trajectory.state_at(start).angle, angle);
+                assert!(trajectory.unwound_at(start).angle.abs() <= TAU);
             }
-            let after = flyer.moving_at(later).pose.rotation;
+            let after = trajectory.moving_at(later).pose.rotation;
             // An angle within the segment has the rounding of a number of its own size.
             let sharp = f64::EPSILON * (1.0 + angle.abs());
             assert!(

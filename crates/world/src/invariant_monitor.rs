@@ -1,8 +1,8 @@
-//! The sentry: stops a world whose connectors, overlaps or energy books are out of bounds.
+//! The monitor: stops a world whose connectors, overlaps or energy books are out of bounds.
 //!
 //! Small broken invariants ([`Finding`]) are reported at the end of a run. After a connector has come apart, bodies lie
 //! in one another, or energy has come from nowhere, all further motion is that of another scene: the advance ends with
-//! an error there. The sentry looks where an advance stops, as often as costs next to nothing.
+//! an error there. The monitor looks where an advance stops, as often as costs next to nothing.
 
 use crate::finding::Finding;
 use crate::ledger::{Books, Turnover};
@@ -20,9 +20,9 @@ pub(crate) const LOOKS: f64 = 50.0;
 /// Fraction of the interval between such looks by which a stop may, by rounding, come too early for one.
 const EARLY: f64 = 1e-6;
 
-/// Memory of the sentry, and buffers for its looks.
+/// Memory of the monitor, and buffers for its looks.
 #[derive(Clone, Debug)]
-pub(crate) struct Sentry {
+pub(crate) struct InvariantMonitor {
     /// Relative accuracy asked for [-].
     pub(crate) tolerance: f64,
     /// Time at the start [s].
@@ -71,8 +71,8 @@ struct Room {
     near: NearPairs,
 }
 
-impl Sentry {
-    /// Makes the sentry of a scene with the given energies.
+impl InvariantMonitor {
+    /// Makes the monitor of a scene with the given energies.
     pub(crate) fn new(settings: &WorldSettings, scales: EnergyScales) -> Self {
         let duration = settings.duration.unwrap_or_default();
         Self {
@@ -94,12 +94,12 @@ impl Sentry {
 }
 
 impl World {
-    /// Checks whether the sentry has stopped the world before.
+    /// Checks whether the monitor has stopped the world before.
     ///
     /// # Errors
     /// The fault that it has found.
     pub(crate) fn ask_guard(&self) -> Result<(), RunError> {
-        self.sentry.found.clone().map_or(Ok(()), Err)
+        self.monitor.found.clone().map_or(Ok(()), Err)
     }
 
     /// Checks the world after an advance, if the advance ended with an error or enough has happened since the last
@@ -109,25 +109,25 @@ impl World {
     /// [`RunError::Astray`] for a fault; else the error of the advance.
     pub(crate) fn stand_guard<T>(&mut self, outcome: Result<T, RunError>) -> Result<T, RunError> {
         let segments = self.steps();
-        let is_soon = segments - self.sentry.looked < SEGMENTS + self.body_count() as u64;
+        let is_soon = segments - self.monitor.looked < SEGMENTS + self.body_count() as u64;
         let is_due = self.is_look_due();
-        self.sentry.is_sound = false;
+        self.monitor.is_sound = false;
         if outcome.is_ok() && is_soon && !is_due || !self.keeps_to_tolerance() {
             return outcome;
         }
-        self.sentry.looked = segments;
-        let mut room = std::mem::take(&mut self.sentry.room);
+        self.monitor.looked = segments;
+        let mut room = std::mem::take(&mut self.monitor.room);
         let books = self.books(&mut room.booked, &mut room.movings);
         let kinetic = self.largest_kinetic_energy();
-        self.sentry.turnover.note(&books);
-        self.sentry.turnover.note_kinetic(kinetic);
+        self.monitor.turnover.note(&books);
+        self.monitor.turnover.note_kinetic(kinetic);
         let found = self.astray(&books, &mut room.near);
-        self.sentry.room = room;
-        self.sentry.is_sound = found.is_none();
+        self.monitor.room = room;
+        self.monitor.is_sound = found.is_none();
         match found {
             Some(finding) => {
                 let error = RunError::Astray { time: self.time(), finding };
-                self.sentry.found = Some(error.clone());
+                self.monitor.found = Some(error.clone());
                 Err(error)
             }
             None => outcome,
@@ -139,20 +139,20 @@ impl World {
         let mut found = Vec::new();
         self.find_connectors_off(&mut found);
         self.find_overlaps(near, &mut found);
-        found.into_iter().next().or_else(|| self.books_astray(books, self.sentry.turnover.energy))
+        found.into_iter().next().or_else(|| self.books_astray(books, self.monitor.turnover.energy))
     }
 
     /// True if the time of one of the looks over the planned duration has come.
     fn is_look_due(&mut self) -> bool {
         let now = self.time();
-        let sentry = &mut self.sentry;
-        if sentry.duration <= 0.0 {
+        let monitor = &mut self.monitor;
+        if monitor.duration <= 0.0 {
             return false;
         }
-        let looks = 1.0 + (LOOKS * (now - sentry.start) / sentry.duration + EARLY).floor();
-        sentry.is_watchful &= looks <= sentry.looks + 1.0;
-        let is_due = looks > sentry.looks;
-        sentry.looks = sentry.looks.max(looks);
+        let looks = 1.0 + (LOOKS * (now - monitor.start) / monitor.duration + EARLY).floor();
+        monitor.is_watchful &= looks <= monitor.looks + 1.0;
+        let is_due = looks > monitor.looks;
+        monitor.looks = monitor.looks.max(looks);
         is_due
     }
 }
@@ -165,7 +165,7 @@ mod tests {
     use halfgap_collision::{Anchor, BodyId, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
 
-    /// Times [s] between which a pendulum makes more segments than the sentry lets pass.
+    /// Times [s] between which a pendulum makes more segments than the monitor lets pass.
     const LATER: f64 = 20.0;
     const LATER_STILL: f64 = 40.0;
 
@@ -191,7 +191,7 @@ mod tests {
     fn a_connector_that_is_off_ends_the_advance() {
         let mut world = pendulum();
         let ConnectorKind::Rod { a, b, .. } = world.connectors[0].kind else { panic!("it is a rod") };
-        // The sentry measures a longer rod than the one that holds the bob.
+        // The monitor measures a longer rod than the one that holds the bob.
         world.connectors[0] = rod(a, b, 1.0 + 1e-3);
         let outcome = world.advance_to(LATER_STILL, &mut |_| ());
         let Err(RunError::Astray { time, finding: Finding::ConnectorOff { error, .. } }) = &outcome else {
@@ -226,10 +226,10 @@ mod tests {
         let mut world = pendulum();
         world.start.energy += 1.0;
         let before = world.statistics().steps;
-        assert!(world.sentry.is_sound, "it has just been looked at");
+        assert!(world.monitor.is_sound, "it has just been looked at");
         world.advance_to(LATER + 1e-3, &mut |_| ()).expect("nobody looks");
         assert!(world.statistics().steps - before < SEGMENTS);
-        assert!(!world.sentry.is_sound, "nobody knows");
+        assert!(!world.monitor.is_sound, "nobody knows");
     }
 
     /// A disc about to bounce off a floor, in a world where every speed that it reaches counts as slow.
@@ -251,7 +251,7 @@ mod tests {
         let mut world = slow_disc();
         world.advance_to(1.0, &mut |_| ()).expect("the user wants it so");
         let mut world = slow_disc();
-        world.sentry.slow_is_given = false;
+        world.monitor.slow_is_given = false;
         let outcome = world.advance_to(1.0, &mut |_| ());
         let Err(RunError::Astray { finding, .. }) = outcome else { panic!("{outcome:?}") };
         assert!(
@@ -289,8 +289,8 @@ mod tests {
             world.findings(10.0).iter().any(|finding| matches!(finding, Finding::Captured { .. }))
         };
         assert!(!told(&world));
-        world.sentry.slow_is_given = false;
-        world.sentry.tolerance = 1e-2;
+        world.monitor.slow_is_given = false;
+        world.monitor.tolerance = 1e-2;
         assert!(world.books_astray(&Books::from(&world.ledger()), 10.0).is_none() && told(&world));
     }
 
@@ -300,7 +300,7 @@ mod tests {
         let mut world = slow_disc();
         world.start.energy += 1e-5;
         world.advance_to(1.0, &mut |_| ()).expect("so little of 5 J is rounding");
-        assert!(world.sentry.turnover.energy > 4.9, "{:?}", world.sentry.turnover);
+        assert!(world.monitor.turnover.energy > 4.9, "{:?}", world.monitor.turnover);
         assert!(world.energy().kinetic < 1e-12);
     }
 
