@@ -1,4 +1,5 @@
-//! The advance of a world, and how it tells its caller what happens. What lies below finds and handles the events.
+//! The advance of a world, and how it tells its caller what happens. The crate
+//! `halfgap-advance` finds and handles the events.
 
 use crate::event::{ContactEvent, Event, ImpactRow};
 use crate::run_error::RunError;

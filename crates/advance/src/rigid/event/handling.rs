@@ -1,4 +1,4 @@
-//! An event from the queue to the room that handles it.
+//! An event of the agenda to the file that handles it.
 
 use crate::rigid::agenda::Source;
 use crate::rigid::books::report::Handled;
