@@ -15,6 +15,7 @@ mod rail_stops;
 mod reference_failures;
 mod reference_scenes;
 mod release;
+mod remedies;
 mod rest;
 mod slots_rods_ropes;
 mod spline_rails;

@@ -1,5 +1,5 @@
 //! Remedies: what is done in rare cases that no principle covers. Each has a name, a counter in the statistics, a switch for
-//! tests, and a scene among the tests that fails without it; docs/remedies.md lists them.
+//! tests, and a scene among the tests that fails without it; docs/lab/remedies.md lists them.
 //!
 //! The counters are atomic so that a system can be read from several threads; they change no motion.
 
@@ -13,12 +13,6 @@ pub enum Remedy {
     GhostCorners,
     /// Features and ropes that turn back by themselves before they touch, near a dead point of a mechanism, are let come nearer.
     DeadPoints,
-    /// The search leaves out the corners at the ends of the edges of a held contact.
-    EndsLeftAlone,
-    /// Contacts that lie deep keep the gaps at which they fire through events of other bodies.
-    DeepRulesKept,
-    /// A contact that opens from where the search does not look fires where it lies.
-    DeepReturn,
     /// Contacts that fire again and again at one time fire at a lower gap, by more each time.
     Insistence,
     /// A body that slides along below its target gap fires later elsewhere, so that it does not run against seams.
@@ -49,12 +43,8 @@ pub enum Remedy {
     JammedForces,
     /// Contacts that act by next to no lever on a body held by connectors are let pass.
     LetPass,
-    /// Contacts that run off their features at once are left out where no forces are found with them.
-    Leaving,
     /// Contacts that run off at once are left out where two corners hand over to each other without end.
     LeavingNeighbours,
-    /// Contacts that contradict each other by little get forces by least squares.
-    LenientForces,
     /// Contradictions that the rounding of bodies at rest explains are taken for no forces.
     RestingContradiction,
     /// Candidates that depend on others are spared where the rows found would pull as equations.
@@ -63,14 +53,8 @@ pub enum Remedy {
     NearlySparing,
     /// Contacts that have sunk too deep are lifted as they are held.
     Lifting,
-    /// Contacts that lifting has not brought to their gaps are held where they are.
-    LiftedLeft,
-    /// Contacts without force that a projection has moved fire at a lower gap.
-    IdleLowered,
     /// Contacts without force that start a segment below their gap by rounding fire at a lower one.
     SunkLowered,
-    /// The neighbour of a contact that runs off its features along a smooth joint is stopped, not struck.
-    HandOver,
     /// Groups whose projection brings contacts nearer by more than their zone are made anew with fewer rows.
     Displaced,
     /// Groups whose rows drive other contacts together are made anew without those that open slowly.
@@ -87,12 +71,9 @@ pub enum Remedy {
 
 impl Remedy {
     /// All remedies, in the order of their declaration.
-    pub const ALL: [Self; 37] = [
+    pub const ALL: [Self; 29] = [
         Self::GhostCorners,
         Self::DeadPoints,
-        Self::EndsLeftAlone,
-        Self::DeepRulesKept,
-        Self::DeepReturn,
         Self::Insistence,
         Self::TriggerGaps,
         Self::OpenFiring,
@@ -108,17 +89,12 @@ impl Remedy {
         Self::LooseCorner,
         Self::JammedForces,
         Self::LetPass,
-        Self::Leaving,
         Self::LeavingNeighbours,
-        Self::LenientForces,
         Self::RestingContradiction,
         Self::Sparing,
         Self::NearlySparing,
         Self::Lifting,
-        Self::LiftedLeft,
-        Self::IdleLowered,
         Self::SunkLowered,
-        Self::HandOver,
         Self::Displaced,
         Self::Driven,
         Self::Passed,
@@ -133,9 +109,6 @@ impl Remedy {
         match self {
             Self::GhostCorners => "ghost_corners",
             Self::DeadPoints => "dead_points",
-            Self::EndsLeftAlone => "ends_left_alone",
-            Self::DeepRulesKept => "deep_rules_kept",
-            Self::DeepReturn => "deep_return",
             Self::Insistence => "insistence",
             Self::TriggerGaps => "trigger_gaps",
             Self::OpenFiring => "open_firing",
@@ -151,17 +124,12 @@ impl Remedy {
             Self::LooseCorner => "loose_corner",
             Self::JammedForces => "jammed_forces",
             Self::LetPass => "let_pass",
-            Self::Leaving => "leaving",
             Self::LeavingNeighbours => "leaving_neighbours",
-            Self::LenientForces => "lenient_forces",
             Self::RestingContradiction => "resting_contradiction",
             Self::Sparing => "sparing",
             Self::NearlySparing => "nearly_sparing",
             Self::Lifting => "lifting",
-            Self::LiftedLeft => "lifted_left",
-            Self::IdleLowered => "idle_lowered",
             Self::SunkLowered => "sunk_lowered",
-            Self::HandOver => "hand_over",
             Self::Displaced => "displaced",
             Self::Driven => "driven",
             Self::Passed => "passed",

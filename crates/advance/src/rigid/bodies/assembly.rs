@@ -263,7 +263,6 @@ impl Assembly {
 }
 
 impl Assembly {
-    // getters of Assembly
     /// The trajectories.
     #[inline]
     pub(crate) fn trajectories(&self) -> &[Trajectory] {

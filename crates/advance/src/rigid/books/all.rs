@@ -16,7 +16,6 @@ pub(crate) struct Books {
 }
 
 impl Books {
-    // getters of Books
     /// The counts.
     #[inline]
     pub(crate) fn counts(&self) -> Counts {

@@ -161,7 +161,6 @@ impl ImpactReport {
 }
 
 impl Told {
-    // getters of Told
     /// The changes.
     #[inline]
     pub(crate) fn changes(&self) -> &ContactChanges {

@@ -268,7 +268,6 @@ impl Connectors {
 }
 
 impl Connectors {
-    // getters of Connectors
     /// The all.
     #[inline]
     pub(crate) fn all(&self) -> &[Connector] {
@@ -283,7 +282,6 @@ impl Connectors {
 }
 
 impl ConnectorState {
-    // getters of ConnectorState
     /// Time before which a rope does not go taut.
     #[inline]
     pub(crate) fn clear(&self) -> Time {

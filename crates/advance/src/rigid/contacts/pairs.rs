@@ -301,7 +301,6 @@ pub(crate) fn is_likely(pairs: &Pairs, record: &Collision) -> Option<bool> {
 }
 
 impl PairPast {
-    // getters of PairPast
     /// Time of the last contact.
     #[inline]
     pub(crate) fn last_contact(&self) -> Option<Time> {
@@ -316,7 +315,6 @@ impl PairPast {
 }
 
 impl Pair {
-    // getters of Pair
     /// Time before which there is no contact.
     #[inline]
     pub(crate) fn clear(&self) -> Time {

@@ -38,8 +38,6 @@ pub(crate) struct HeldRow {
     pub(crate) hint: Option<RailHint>,
     /// It is a corner, sharp or round, that leans off its line.
     pub(crate) leans: bool,
-    /// It is lifted into its target zone, which is wide enough for that to be seen.
-    pub(crate) is_lifted: bool,
 }
 
 /// A row at one moment.

@@ -85,8 +85,8 @@ fn list_idle(
             let gap = assembly.refire_gap(gap);
             let source = RowSource::Contact(touch.features);
             let bodies = touch.bodies;
-            let (hint, leans, is_lifted) = (None, false, false);
-            let row = HeldRow { source, bodies, bilateral: false, gap, hint, leans, is_lifted };
+            let (hint, leans) = (None, false);
+            let row = HeldRow { source, bodies, bilateral: false, gap, hint, leans };
             group.add_idle(with_lean(assembly, connectors, row, assembly.now()));
         }
     }

@@ -106,8 +106,6 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
     with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
         dynamics.soften_dependent();
         dynamics.end_on_rows(tools);
-        dynamics.leave_lifted();
-        dynamics.lower_idle();
     });
     rooms.books.book_projection(group.set_off());
     with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {

@@ -69,6 +69,4 @@ impl Group {
     }
 }
 
-impl Past {
-    // getters of Past
-}
+impl Past {}

@@ -201,7 +201,6 @@ pub(crate) fn part(assembly: &mut Assembly, connectors: &mut Connectors, group: 
 }
 
 impl Groups {
-    // getters of Groups
     /// Group of each leader.
     #[inline]
     pub(crate) fn by_leader(&self) -> &[Option<Box<Group>>] {

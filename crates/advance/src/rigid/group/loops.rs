@@ -56,7 +56,6 @@ mod tests {
             gap: 0.0,
             hint: None,
             leans: false,
-            is_lifted: false,
         };
         let rows: Vec<_> =
             (0..ends.len()).flat_map(|connector| [row(connector, 0), row(connector, 1)]).collect();

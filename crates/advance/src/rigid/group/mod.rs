@@ -10,7 +10,7 @@
 //!   closed `loops`;
 //! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures` and `inner`; its
 //!   method, `stepping`, `brief`, `stiff` and `stiffness`; its length where contacts are `watched` or splines have `kinks`;
-//!   its end moved onto the rows, `projection`; gaps at the start, `lifted`; the energy it must keep, `energy`;
+//!   its end moved onto the rows, `projection`; the energy it must keep, `energy`;
 //! * in time: `extending` adds a step to a group, with its `tools`; `placing` evaluates where the bodies are along it.
 
 pub(super) mod attempt;
@@ -22,7 +22,6 @@ pub(super) mod groups;
 pub(super) mod inner;
 pub(super) mod kinks;
 pub(super) mod level;
-pub(super) mod lifted;
 pub(super) mod loops;
 pub(super) mod making;
 pub(super) mod measures;

@@ -9,7 +9,6 @@ use crate::time::Time;
 use halfgap_collision::BodyId;
 
 impl Group {
-    // getters of Group
     /// Its bodies, ascending.
     #[inline]
     pub(crate) fn bodies(&self) -> &[BodyId] {

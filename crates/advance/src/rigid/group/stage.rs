@@ -73,7 +73,6 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    // getters of Stage
     /// Accelerations of the group's bodies (x, y, angle).
     #[inline]
     pub(crate) fn accelerations(&self) -> &[[f64; 3]] {

@@ -88,8 +88,7 @@ fn held_row(
     // its length would move a body that hangs on it by a long arm by much more.
     let bilateral = record.parties.bilateral;
     let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
-    let is_lifted = lifted.is_some() && is_seen(assembly, record);
-    let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false, is_lifted };
+    let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false };
     Some(with_lean(assembly, connectors, row, time))
 }
 

@@ -7,8 +7,6 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{RowSource, mechanism, source_of};
-use crate::rigid::group::stage::Stage;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
@@ -17,23 +15,6 @@ use halfgap_geometry::{Pose, Rotation};
 /// Multiple of the resolution time within which a leaving contact slides by `accuracy`; one that slides more slowly
 /// stays.
 const SOON: f64 = 1e3;
-
-/// Leaves out the candidates that run off their features while they slide by `accuracy`; true if there are any. The
-/// bodies are in the stage.
-pub(crate) fn drop_leaving(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    region: &Region,
-    settling: &mut Settling,
-    stage: &Stage,
-) -> bool {
-    let before = settling.candidates.len();
-    settling.candidates.retain(|&index| {
-        let record = &region.records()[index];
-        !leaves_at_once(assembly, connectors, record, |body| stage.movings()[body.index()])
-    });
-    settling.candidates.len() < before
-}
 
 /// Leaves out the records of a region that run off their features while they slide by `accuracy`.
 pub(crate) fn retain_staying(assembly: &Assembly, connectors: &Connectors, region: &mut Region) {

@@ -18,7 +18,6 @@ use crate::rigid::group::stage::Stage;
 use crate::rigid::held::choosing::{choose_rows, drop_idle, places_of};
 use crate::rigid::held::hops::{is_low_hop, may_hop};
 use crate::rigid::held::jammed::is_jammed;
-use crate::rigid::held::leaving::drop_leaving;
 use crate::rigid::held::passing::let_pass;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::held::sparing::{spare_nearly_redundant, spare_redundant};
@@ -145,17 +144,7 @@ fn solve_candidates(
         pose_problem(assembly, region, settling, stage);
         found = settling.solve_strictly();
     }
-    let may_leave = found.is_err() && remedies.is_on(Remedy::Leaving);
-    if may_leave && drop_leaving(assembly, connectors, region, settling, stage) {
-        remedies.act(Remedy::Leaving);
-        pose_problem(assembly, region, settling, stage);
-        found = settling.solve_strictly();
-    }
     let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
-    let found = found.or_else(|error| match remedies.act(Remedy::LenientForces) {
-        true => settling.solve_leniently(),
-        false => Err(error),
-    });
     if let Err(source) = found {
         // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.

@@ -185,10 +185,6 @@ impl Settling {
         self.solution.method == Method::ProximalNewton
     }
 
-    pub(super) fn solve_leniently(&mut self) -> Result<(), SolveError> {
-        self.lenient.solve(&self.problem, &mut self.solution)
-    }
-
     /// True if a contact was left out because it acts by next to no lever.
     pub(crate) fn lets_pass(&self, touch: Touch) -> bool {
         self.passing.contains(&touch)
@@ -246,7 +242,6 @@ impl Settling {
 }
 
 impl Settling {
-    // getters of Settling
     /// The rows to be held, with the index of each one's record.
     #[inline]
     pub(crate) fn held(&self) -> &[(usize, HeldRow)] {

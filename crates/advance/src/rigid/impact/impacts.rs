@@ -26,8 +26,6 @@ pub(crate) enum Manner {
     Lawful(u64),
     /// Without elasticity.
     Inelastic,
-    /// Without elasticity, but given up if that takes long.
-    Trial,
 }
 
 /// Finds the impulses of a region's rows.
@@ -43,7 +41,6 @@ pub(crate) fn find_impulses(
             view.assembly.settings().impact_law.resolve(impact, view.assembly.settings().order, number)
         }
         Manner::Inelastic => impact.resolve_inelastic(),
-        Manner::Trial => impact.try_inelastic(),
     }
 }
 

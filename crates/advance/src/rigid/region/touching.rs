@@ -105,23 +105,6 @@ impl Region {
         self.records.remove(index);
     }
 
-    /// Marks contacts as bilateral; true if there are any of which the test is true.
-    pub(crate) fn mark(&mut self, is_wanted: impl Fn(&Collision) -> bool) -> bool {
-        let mut any = false;
-        for record in self.records.iter_mut().filter(|record| is_wanted(record)) {
-            record.parties.bilateral = true;
-            any = true;
-        }
-        any
-    }
-
-    /// Removes the marks as bilateral from the contacts.
-    pub(crate) fn unmark(&mut self) {
-        for record in &mut self.records {
-            record.parties.bilateral = record.parties.primary.site.is_none() && record.parties.bilateral;
-        }
-    }
-
     /// Lets all records in that are left out.
     pub(crate) fn admit_all(&mut self) {
         self.records.append(&mut self.left_out);
@@ -160,12 +143,6 @@ impl Region {
     #[cfg(test)]
     pub(crate) fn records_mut(&mut self) -> &mut [Collision] {
         &mut self.records
-    }
-
-    /// Forgets the touches, for tests.
-    #[cfg(test)]
-    pub(crate) fn forget_touches(&mut self) {
-        self.touches.clear();
     }
 
     /// Place of a body in the region; `None` for bodies outside it and those that cannot move.
@@ -226,7 +203,6 @@ pub(crate) fn measure_touches(assembly: &Assembly, region: &mut Region) {
 }
 
 impl Region {
-    // getters of Region
     /// The movable bodies, in the order in which they were found.
     #[inline]
     pub(crate) fn bodies(&self) -> &[BodyId] {

@@ -147,7 +147,6 @@ impl Lane {
 }
 
 impl Lane {
-    // getters of Lane
     /// Gap [m] at which the body fires.
     #[inline]
     pub(crate) fn trigger_gap(&self) -> f64 {

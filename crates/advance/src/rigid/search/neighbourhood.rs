@@ -9,7 +9,6 @@ use crate::rigid::search::marks::Marks;
 use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
 use halfgap_collision::{BodyId, BroadPhase};
-use halfgap_geometry::FeatureId;
 
 /// Bodies as the search sees them, with its buffers.
 #[derive(Clone, Debug)]
@@ -25,8 +24,6 @@ pub(crate) struct Neighbourhood {
     pub(super) excluded: Vec<(BodyId, BodyId)>,
     /// True for bodies that no other body can collide with.
     pub(super) loners: Vec<bool>,
-    /// Contacts that lie deep, with the gaps [m] at which they were to fire, while the rules are made anew.
-    pub(super) deep: Vec<(PairId, [FeatureId; 2], f64)>,
     /// Buffer: pairs whose rules or predictions an event changes.
     pub(super) touched: Vec<PairId>,
     /// Buffer: links of a body.
@@ -60,16 +57,6 @@ impl Neighbourhood {
         self.touched = touched;
     }
 
-    /// Forgets the contacts that lie deep.
-    pub(crate) fn clear_deep(&mut self) {
-        self.deep.clear();
-    }
-
-    /// Puts aside a contact that lies deep, with the gap [m] at which it was to fire.
-    pub(crate) fn put_deep(&mut self, pair: PairId, features: [FeatureId; 2], target: f64) {
-        self.deep.push((pair, features, target));
-    }
-
     /// Sets up the search for bodies; the broad phase is still empty.
     pub(crate) fn new(
         trajectories: &[Trajectory],
@@ -91,7 +78,6 @@ impl Neighbourhood {
             first_contacts: vec![Time::NEVER; trajectories.len()],
             loners: loners(trajectories.len(), settings.collisions, &excluded),
             excluded,
-            deep: Vec::new(),
             touched: Vec::new(),
             links: Vec::new(),
             neighbours: Vec::new(),
@@ -112,13 +98,6 @@ pub(crate) fn loners(count: usize, collisions: bool, excluded: &[(BodyId, BodyId
 }
 
 impl Neighbourhood {
-    // getters of Neighbourhood
-    /// Contacts that lie deep, with the gaps [m] at which they were to fire, while the rules are made anew.
-    #[inline]
-    pub(crate) fn deep(&self) -> &[(PairId, [FeatureId; 2], f64)] {
-        &self.deep
-    }
-
     /// Pairs that never collide, the lesser id first, sorted.
     #[inline]
     pub(crate) fn excluded(&self) -> &[(BodyId, BodyId)] {

@@ -145,7 +145,6 @@ pub(crate) fn may_have_sunk_by(assembly: &Assembly, sinking: &Sinking, bodies: [
 }
 
 impl Sinking {
-    // getters of Sinking
     /// Distance [m] by which bodies have been moved in being put back; zero except during a tick.
     #[inline]
     pub(crate) fn moved(&self) -> f64 {

@@ -69,7 +69,6 @@ pub(crate) struct Recent {
 }
 
 impl Zeno {
-    // getters of Zeno
     /// Time at which a pair last fired more often than [`CALM_REPEATS`](super::repeats::CALM_REPEATS).
     #[inline]
     pub(crate) fn last_insistent(&self) -> Option<Time> {

@@ -127,8 +127,8 @@ impl Scene {
         let bodies = self.connectors[connector].bodies();
         for row in 0..self.connectors[connector].row_count() {
             let source = RowSource::Connector(id, row);
-            let (hint, leans, is_lifted) = (None, false, false);
-            let row = HeldRow { source, bodies, bilateral: true, gap: 0.0, hint, leans, is_lifted };
+            let (hint, leans) = (None, false);
+            let row = HeldRow { source, bodies, bilateral: true, gap: 0.0, hint, leans };
             self.group.rows.push(row);
         }
     }
