@@ -313,6 +313,10 @@ impl Impact {
 
     /// The error of the row with the greatest violation, if that exceeds the greatest that may be left.
     fn unfinished(&self) -> Option<ImpactError> {
+        // Impulses that grew beyond all bounds.
+        if let Some(row) = self.rates.iter().position(|rate| !rate.is_finite()) {
+            return Some(ImpactError::Unfinished { row, rate: self.rates[row], bound: self.bound });
+        }
         let row = (0..self.rows.len()).max_by(|&p, &q| self.violation(p).total_cmp(&self.violation(q)))?;
         let bound = self.rest(NEARLY * self.fastest);
         let is_left = self.violation(row) > bound + self.rounding_of_rates(bound);
@@ -367,6 +371,14 @@ mod tests {
                 );
                 assert!(matches!(impact.resolve_inelastic(), Err(ImpactError::BadRow { .. })));
             }
+        }
+    }
+
+    #[test]
+    fn rates_that_are_not_finite_are_never_finished() {
+        for rate in [f64::NAN, -f64::NAN, f64::INFINITY] {
+            let outcome = finish_at(rate, 1.0, 0.0);
+            assert!(matches!(outcome, Err(ImpactError::Unfinished { row: 0, .. })), "{rate}: {outcome:?}");
         }
     }
 
