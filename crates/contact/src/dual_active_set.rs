@@ -166,11 +166,7 @@ impl DualActiveSet {
         warm: Start<'_>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        problem.require_plain(Method::DualActiveSet)?;
-        if !problem.is_symmetric() {
-            let reason = "it needs a symmetric, positive semidefinite matrix";
-            return Err(SolveError::NotApplicable { method: Method::DualActiveSet, reason });
-        }
+        problem.require_symmetric(Method::DualActiveSet)?;
         let attempts = self.attempts();
         // At first connectors that contradict each other are left to contacts. If that fails, it does not count as an
         // attempt.

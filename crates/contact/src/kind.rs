@@ -143,6 +143,13 @@ impl Problem {
         }
     }
 
+    /// Refuses, in the name of a method, a problem that is not plain, or not given with a symmetric matrix.
+    pub(crate) fn require_symmetric(&self, method: Method) -> Result<(), SolveError> {
+        self.require_plain(method)?;
+        let reason = "it needs a symmetric, positive semidefinite matrix";
+        if self.is_symmetric() { Ok(()) } else { Err(SolveError::NotApplicable { method, reason }) }
+    }
+
     /// The first row that is not plain, with words for its kind.
     pub(crate) fn unplain_row(&self) -> Option<(usize, &'static str)> {
         let &(row, kind, _) = self.further.0.first()?;

@@ -114,11 +114,7 @@ impl Solver for Qp {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
-        problem.require_plain(Method::Qp)?;
-        if !problem.is_symmetric() {
-            let reason = "it needs a symmetric, positive semidefinite matrix";
-            return Err(SolveError::NotApplicable { method: Method::Qp, reason });
-        }
+        problem.require_symmetric(Method::Qp)?;
         if !problem.has_bodies() && problem.len() > FACTORED {
             let reason = "so large a problem must be given by the rows of bodies and their masses";
             return Err(SolveError::NotApplicable { method: Method::Qp, reason });

@@ -58,16 +58,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
     let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause(), seen).map(|(gap, _)| gap);
     let time = cut_exactly(rooms, region, gap);
     if is_off(&rooms.view(), region, gap, time) && rooms.assembly.remedies().act(Remedy::CutByDense) {
-        for &leader in region.groups() {
-            cut_group(
-                &mut rooms.assembly,
-                &mut rooms.connectors,
-                &mut rooms.groups,
-                leader,
-                seen,
-                CutBy::Dense,
-            );
-        }
+        place_groups(rooms, region, seen, CutBy::Dense);
     } else {
         rooms.assembly.set_now(time);
     }
@@ -81,16 +72,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
 fn cut_exactly(rooms: &mut Rooms, region: &Region, gap: Option<f64>) -> Time {
     let mut time = rooms.assembly.now();
     for round in 0..=MOST_CORRECTIONS {
-        for &leader in region.groups() {
-            cut_group(
-                &mut rooms.assembly,
-                &mut rooms.connectors,
-                &mut rooms.groups,
-                leader,
-                time,
-                CutBy::Exact,
-            );
-        }
+        place_groups(rooms, region, time, CutBy::Exact);
         if round == MOST_CORRECTIONS {
             break;
         }
@@ -178,8 +160,16 @@ fn is_in_another(assembly: &Assembly, pairs: &Pairs, body: BodyId, region: &Regi
     })
 }
 
+/// Places the bodies of all groups of a region where they are at a time.
+fn place_groups(rooms: &mut Rooms, region: &Region, time: Time, source: CutBy) {
+    let Rooms { assembly, connectors, groups, .. } = rooms;
+    for &leader in region.groups() {
+        place_group(assembly, connectors, groups, leader, time, source);
+    }
+}
+
 /// Places the bodies of a group where they are at a time; the group stays as it was, so that it can be cut again.
-fn cut_group(
+fn place_group(
     assembly: &mut Assembly,
     connectors: &mut Connectors,
     groups: &mut Groups,
