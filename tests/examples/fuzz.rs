@@ -8,14 +8,16 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --coarse   # with zones that one can see
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --impulses # with contacts that carry impulses only
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --varied   # reference scenes with other numbers
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --needs haste,storms   # tells which scenes need a remedy
 //! ```
 //!
 //! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.
 
+use halfgap::{Remedy, RemedySet};
 use halfgap_tests::generate::{
     billiard_of_seed, coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed,
 };
-use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
+use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial, trial_without};
 use halfgap_tests::shrink::shrink;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -24,8 +26,8 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// A scene that says nothing for so long hangs.
-const HANGS: Duration = Duration::from_secs(20);
+/// A scene that says nothing for so long hangs, even on a machine that others use.
+const HANGS: Duration = Duration::from_secs(60);
 /// Seeds listed for each kind.
 const LISTED: usize = 8;
 
@@ -40,17 +42,32 @@ Runs generated scenes and counts what became of them.
   --shrink S    prints a smaller one that fails alike
   --coarse      in all of this, scenes with zones that one can see
   --impulses    or such whose contacts carry impulses only
-  --varied      or reference scenes with other numbers";
+  --varied      or reference scenes with other numbers
+  --needs R,S   and again where one of these remedies acts, without it";
 
 /// Options that a number follows, and those of the processes that this one starts.
 const WITH_NUMBER: [&str; 6] = ["--count", "--seed", "--jobs", "--scene", "--billiard", "--shrink"];
 const WORKER: &str = "--worker";
+/// The option that names of remedies follow.
+const NEEDS: &str = "--needs";
+
+/// The remedies of some names; `None` if one has no such name.
+fn remedies(names: &str) -> Option<Vec<Remedy>> {
+    let of_name = |name| Remedy::ALL.into_iter().find(|remedy| remedy.name() == name);
+    names.split(',').map(of_name).collect()
+}
 
 /// What is wrong with the arguments, if something is.
 fn complaint(arguments: &[String]) -> Option<String> {
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let takes_number = WITH_NUMBER.contains(&argument.as_str());
+        if argument == NEEDS {
+            match rest.next().and_then(|names| remedies(names)) {
+                Some(_) => continue,
+                None => return Some(format!("names of remedies must follow {NEEDS}")),
+            }
+        }
         if !takes_number && argument != WORKER && Scenes::asked_for(argument).is_none() {
             return Some(format!("\"{argument}\" is no option"));
         }
@@ -81,6 +98,8 @@ fn main() {
     let (first, count) = (number("--seed", 1), number("--count", 1000));
     let asked = arguments.iter().find_map(|argument| Scenes::asked_for(argument));
     let scenes = asked.unwrap_or(Scenes::Fine);
+    let names = arguments.iter().position(|argument| argument == NEEDS);
+    let needs = names.and_then(|place| remedies(&arguments[place + 1])).unwrap_or_default();
     if has("--scene") {
         println!("{:#}", scenes.of_seed(number("--scene", 1)));
     } else if has("--billiard") {
@@ -88,9 +107,9 @@ fn main() {
     } else if has("--shrink") {
         print_shrunk(&scenes.of_seed(number("--shrink", 1)));
     } else if has(WORKER) {
-        work(scenes, first, count);
+        work(&Trials { scenes, needs }, first, count);
     } else {
-        let failed = supervise(scenes, first, count, number("--jobs", 2));
+        let failed = supervise(&Trials { scenes, needs }, first, count, number("--jobs", 2));
         std::process::exit(i32::from(failed));
     }
 }
@@ -143,7 +162,7 @@ fn print_shrunk(scene: &Value) {
 }
 
 /// Runs scenes and writes a line before and after each.
-fn work(scenes: Scenes, first: u64, count: u64) {
+fn work(Trials { scenes, needs }: &Trials, first: u64, count: u64) {
     silence_panics();
     let mut out = std::io::stdout().lock();
     let mut say = |line: String| {
@@ -152,7 +171,14 @@ fn work(scenes: Scenes, first: u64, count: u64) {
     };
     for seed in first..first + count {
         say(format!("start {seed}"));
-        let verdict = trial(&scenes.of_seed(seed).to_string(), Budget::default());
+        let scene = scenes.of_seed(seed).to_string();
+        let (verdict, acted) = trial_without(&scene, Budget::default(), RemedySet::NONE);
+        for &remedy in needs.iter().filter(|&&remedy| acted.of(remedy) > 0) {
+            let (other, _) = trial_without(&scene, Budget::default(), RemedySet::NONE.with(remedy));
+            let ends = if other.is_worse_than(&verdict) { "worse" } else { "no worse" };
+            let (name, other, verdict) = (remedy.name(), other.kind(), verdict.kind());
+            eprintln!("seed {seed} ends {ends} without {name}: {other} instead of {verdict}");
+        }
         let what = match &verdict {
             Verdict::Broken(broken) => format!("\t{}", broken.what.replace('\n', " ")),
             Verdict::Shallow(why)
@@ -167,18 +193,26 @@ fn work(scenes: Scenes, first: u64, count: u64) {
     }
 }
 
+/// What is run: scenes of a kind, and again without each remedy of some that acts in them.
+#[derive(Clone, Debug)]
+struct Trials {
+    scenes: Scenes,
+    needs: Vec<Remedy>,
+}
+
 /// Seeds by kind, each with the first words about it.
 type Found = BTreeMap<String, Vec<(u64, String)>>;
 
 /// Lets processes run all scenes; true if one failed.
-fn supervise(scenes: Scenes, first: u64, count: u64, jobs: u64) -> bool {
+fn supervise(trials: &Trials, first: u64, count: u64, jobs: u64) -> bool {
     let started = Instant::now();
     let share = count.div_ceil(jobs);
     let threads: Vec<_> = (0..jobs)
         .map(|job| {
             let from = first + job * share;
             let to = (from + share).min(first + count);
-            std::thread::spawn(move || run_all(scenes, from, to))
+            let trials = trials.clone();
+            std::thread::spawn(move || run_all(&trials, from, to))
         })
         .collect();
     let mut found = Found::new();
@@ -205,10 +239,10 @@ fn report(found: &Found) {
 }
 
 /// Runs the scenes of the seeds from one up to another, in as many processes as it takes.
-fn run_all(scenes: Scenes, mut from: u64, to: u64) -> Found {
+fn run_all(trials: &Trials, mut from: u64, to: u64) -> Found {
     let mut found = Found::new();
     while from < to {
-        let (mut child, lines) = spawn(scenes, from, to - from);
+        let (mut child, lines) = spawn(trials, from, to - from);
         let mut running = None;
         loop {
             match lines.recv_timeout(HANGS) {
@@ -248,11 +282,16 @@ fn add(found: &mut Found, seed: u64, kind: &str, what: &str) {
     found.entry(kind.to_owned()).or_default().push((seed, what.to_owned()));
 }
 
-fn spawn(scenes: Scenes, first: u64, count: u64) -> (Child, Receiver<String>) {
+fn spawn(Trials { scenes, needs }: &Trials, first: u64, count: u64) -> (Child, Receiver<String>) {
     let program = std::env::current_exe().expect("this program has a path");
     let mut child = Command::new(program)
         .args([WORKER, "--seed", &first.to_string(), "--count", &count.to_string()])
         .args(scenes.option())
+        .args((!needs.is_empty()).then_some(NEEDS))
+        .args(
+            (!needs.is_empty())
+                .then(|| needs.iter().map(|remedy| remedy.name()).collect::<Vec<_>>().join(",")),
+        )
         .stdout(Stdio::piped())
         .spawn()
         .expect("a process can be started");

@@ -5,14 +5,15 @@
 //! distances come from the geometry alone, energy from the states.
 
 use crate::touching::wrong_contact;
+use cpu_time::ThreadTime;
 use halfgap::force::{Moving, Snapshot, Wrench, Wrenches};
 use halfgap::geometry::{DVec2, Pose, Relation};
 use halfgap::scene::{ConnectorData, ForceData, Scene, SceneFormat};
-use halfgap::{BodyId, ConnectorId, RunError, World};
-use std::cell::RefCell;
+use halfgap::{BodyId, ConnectorId, RemedyCounts, RemedySet, RunError, World, WorldBuilder};
+use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Number of intervals between the states that are checked in each run.
 const LOOKS: u32 = 50;
@@ -52,13 +53,13 @@ const HALVINGS: u32 = 5;
 pub struct Budget {
     /// Number of events.
     pub events: u64,
-    /// Wall time.
-    pub wall: Duration,
+    /// Time of a core: other processes on the machine spend none of it.
+    pub core: Duration,
 }
 
 impl Default for Budget {
     fn default() -> Self {
-        Self { events: 300_000, wall: Duration::from_secs(3) }
+        Self { events: 300_000, core: Duration::from_secs(3) }
     }
 }
 
@@ -102,6 +103,19 @@ impl Verdict {
         }
     }
 
+    /// True if the run ended worse than another: over budget, in an error, or with a broken invariant.
+    #[must_use]
+    pub fn is_worse_than(&self, other: &Self) -> bool {
+        let rank = |verdict: &Self| match verdict {
+            Self::Finished | Self::Refused(_) => 0,
+            Self::Shallow(_) => 1,
+            Self::Unfinished(_) => 2,
+            Self::Stopped(_) => 3,
+            Self::Broken(_) => 4,
+        };
+        rank(self) > rank(other)
+    }
+
     /// True if an invariant is broken.
     #[must_use]
     pub fn is_broken(&self) -> bool {
@@ -139,7 +153,14 @@ struct Spent {
 /// Runs a scene, given as JSON.
 #[must_use]
 pub fn trial(json: &str, budget: Budget) -> Verdict {
-    match catch_unwind(AssertUnwindSafe(|| run(json, budget))) {
+    trial_without(json, budget, RemedySet::NONE).0
+}
+
+/// Runs a scene, given as JSON, with some remedies switched off; tells how often the others acted.
+#[must_use]
+pub fn trial_without(json: &str, budget: Budget, without: RemedySet) -> (Verdict, RemedyCounts) {
+    let acted = Cell::new(RemedyCounts::default());
+    let verdict = match catch_unwind(AssertUnwindSafe(|| run(json, budget, without, &acted))) {
         Ok(verdict) => verdict,
         Err(payload) => match payload.downcast::<Spent>() {
             Ok(spent) if spent.crawls => {
@@ -148,7 +169,8 @@ pub fn trial(json: &str, budget: Budget) -> Verdict {
             Ok(spent) => Verdict::Unfinished(spent.what),
             Err(_) => Verdict::Broken(last_panic()),
         },
-    }
+    };
+    (verdict, acted.get())
 }
 
 fn last_panic() -> Broken {
@@ -157,15 +179,20 @@ fn last_panic() -> Broken {
     Broken { kind: format!("panic {}", place.trim_end_matches(':')), what }
 }
 
-fn run(json: &str, budget: Budget) -> Verdict {
+fn run(json: &str, budget: Budget, without: RemedySet, acted: &Cell<RemedyCounts>) -> Verdict {
     let scene = match Scene::parse(json, SceneFormat::Json) {
         Ok(scene) => scene,
         Err(error) => return Verdict::Refused(error.to_string()),
     };
     let mut purse = Purse::new(budget, scene.run.start_time, scene.run.duration);
-    let mut world = match World::from_scene(&scene) {
+    let built = WorldBuilder::from_scene(&scene).map_err(|error| error.to_string());
+    let built = built.and_then(|mut builder| {
+        builder.settings_mut().without = without;
+        builder.build().map_err(|error| error.to_string())
+    });
+    let mut world = match built {
         Ok(world) => world,
-        Err(error) => return Verdict::Refused(error.to_string()),
+        Err(why) => return Verdict::Refused(why),
     };
     let mut inspector = Inspector::new(&scene, &world);
     for stop in 0..=LOOKS * STOPS {
@@ -174,6 +201,7 @@ fn run(json: &str, budget: Budget) -> Verdict {
             purse.events += 1;
             purse.spend(event.time());
         });
+        acted.set(world.statistics().remedies);
         // A broken invariant that the world itself reports need not be searched for.
         if let Err(error @ RunError::Astray { .. }) = outcome {
             return Verdict::Stopped(error.to_string());
@@ -194,7 +222,7 @@ fn run(json: &str, budget: Budget) -> Verdict {
 /// The budget of a run, and the part of it that is spent.
 struct Purse {
     budget: Budget,
-    started: Instant,
+    started: ThreadTime,
     events: u64,
     start: f64,
     duration: f64,
@@ -208,7 +236,7 @@ impl Purse {
     fn new(budget: Budget, start: f64, duration: f64) -> Self {
         Self {
             budget,
-            started: Instant::now(),
+            started: ThreadTime::now(),
             events: 0,
             start,
             duration,
@@ -219,23 +247,23 @@ impl Purse {
 
     /// Panics with [`Spent`] once the budget is spent, with the run at a time [s]; a run that crawls gets more, once.
     fn spend(&mut self, time: f64) {
-        let wall = self.started.elapsed();
+        let spent = self.started.elapsed();
         let half_way = self.half_way;
-        if 2 * self.events > self.budget.events || 2 * wall > self.budget.wall {
+        if 2 * self.events > self.budget.events || 2 * spent > self.budget.core {
             self.half_way.get_or_insert(time);
         }
-        if self.events > self.budget.events || wall > self.budget.wall {
+        if self.events > self.budget.events || spent > self.budget.core {
             let since_half = half_way.map_or(f64::INFINITY, |half_way| time - half_way);
             let crawls = since_half < CRAWLS * self.duration;
             if crawls && !self.is_extended {
                 self.is_extended = true;
                 self.half_way = None;
                 self.budget.events *= u64::from(PATIENCE);
-                self.budget.wall *= PATIENCE;
+                self.budget.core *= PATIENCE;
                 return;
             }
             let (events, part) = (self.events, (time - self.start) / self.duration);
-            let what = format!("{events} events in {wall:.1?}, {:.1} parts in 100 of the way", 100.0 * part);
+            let what = format!("{events} events in {spent:.1?}, {:.1} parts in 100 of the way", 100.0 * part);
             std::panic::panic_any(Spent { crawls, what });
         }
     }

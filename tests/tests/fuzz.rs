@@ -37,7 +37,7 @@ fn all_invariants_hold_in_generated_billiards() {
 }
 
 /// Budget that suffices wherever the tests run: a run that was slow once shows by its number of events.
-const PATIENT: Budget = Budget { events: 300_000, wall: Duration::from_secs(20) };
+const PATIENT: Budget = Budget { events: 300_000, core: Duration::from_secs(20) };
 
 /// Scenes of all kinds in which something was wrong once, by seed.
 const ONCE_BROKEN: &[(u64, &str)] = &[

@@ -41,6 +41,7 @@ mod remedies;
 mod scales;
 mod search;
 mod settings;
+mod shares;
 mod sinking;
 mod system;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::remedies::RemedySet;
 use crate::rigid::settings::{RigidSettings, StepControl};
+use crate::rigid::shares::NEGLIGIBLE;
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Aabb;
@@ -13,14 +14,7 @@ const GAP_SHARE: f64 = 1e-2;
 /// Least target gap as a multiple of machine epsilon times the largest coordinate: gaps must be told from rounding, and
 /// so must the small fraction of a gap by which a contact without force may sink before it fires again.
 const GAP_ROUNDINGS: f64 = 512.0;
-/// Twice `GAP_ROUNDINGS`: `velocity_tol` is at least the speed that a body from rest reaches across the least target
-/// gap.
-const SPEED_ROUNDINGS: f64 = 1024.0;
 
-/// `velocity_tol` is at least this fraction of the value that the fastest body alone would give.
-const SLOWEST: f64 = 1e-3;
-/// Upper bound of `rest_speed` as a fraction of `velocity_tol`.
-const REST_OF_SLOW: f64 = 1e-3;
 /// Upper bound of `rest_speed` as a fraction of the scene's speed.
 const REST: f64 = 1e-8;
 /// Error of one step as a fraction of the tolerance, at the finest tolerance.
@@ -94,19 +88,18 @@ impl Scales {
 
     /// Normal speed [m/s] up to which a contact is slow: `tolerance` times the scene's speed, but no more than
     /// sqrt(`tolerance`) times [`Self::slow`], which the slowest body gains by falling half of `tolerance` times its
-    /// size, and no less than `SLOWEST` of the former.
+    /// size, and no less than `NEGLIGIBLE` of the former.
     fn slowness(&self, tolerance: f64) -> f64 {
         let of_fast = tolerance * self.speed_scale();
         let of_slow = self.slow.map_or(f64::INFINITY, |slow| tolerance.sqrt() * slow);
-        of_fast.min(of_slow.max(SLOWEST * of_fast))
+        of_fast.min(of_slow.max(NEGLIGIBLE * of_fast))
     }
 
     /// Thresholds of touching for a relative tolerance.
     #[must_use]
     pub fn tolerances(&self, tolerance: f64) -> Tolerances {
         let target_gap = self.wanted_gap(tolerance).max(self.smallest_gap());
-        let told_from_rounding =
-            (SPEED_ROUNDINGS * f64::EPSILON * self.coordinate * self.acceleration).sqrt();
+        let told_from_rounding = (2.0 * self.smallest_gap() * self.acceleration).sqrt();
         Tolerances {
             target_gap,
             accuracy: Tolerances::ACCURACY_SHARE * target_gap,
@@ -163,7 +156,7 @@ fn local_error(tolerance: f64, method: Method) -> f64 {
 
 /// Largest rate [m/s] at which a row is at rest, in a scene of the given speed [m/s].
 pub(crate) fn rest_speed(velocity_tol: f64, speed: f64) -> f64 {
-    let slow = REST_OF_SLOW * velocity_tol;
+    let slow = NEGLIGIBLE * velocity_tol;
     if speed > 0.0 { slow.min(REST * speed) } else { slow }
 }
 
@@ -197,7 +190,7 @@ mod tests {
         // Where all bodies are about as fast, or the tolerance is fine, the slowest body does not matter.
         assert_eq!([slow(1e-2, 10.0), slow(1e-8, 1e4)], [1e-1, 1e-4]);
         assert_eq!([slow(1e-2, 1e4), slow(1e-4, 1e4)], [0.1 * 3.0, 1e-2 * 3.0]);
-        assert_eq!(slow(1e-2, 1e9), SLOWEST * 1e7);
+        assert_eq!(slow(1e-2, 1e9), NEGLIGIBLE * 1e7);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use crate::rigid::bodies::laws::Laws;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::RigidSettings;
+use crate::rigid::shares::SMALL;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Moving};
@@ -190,9 +191,6 @@ impl Assembly {
     }
 }
 
-/// Bound of that depth, as a fraction of area over reach of the thinner body.
-const THIN_SHARE: f64 = 1e-1;
-
 impl Assembly {
     /// True for a body other than a disc that turns.
     pub(crate) fn turns_about(&self, body: BodyId) -> bool {
@@ -225,7 +223,7 @@ impl Assembly {
     pub(crate) fn thinness(&self, bodies: [BodyId; 2]) -> f64 {
         let shares = bodies.map(|body| {
             let trajectory = self.trajectory(body);
-            THIN_SHARE * trajectory.body().shape.mass_properties().area / trajectory.reach()
+            SMALL * trajectory.body().shape.mass_properties().area / trajectory.reach()
         });
         shares[0].min(shares[1])
     }

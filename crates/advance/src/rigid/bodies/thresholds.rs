@@ -1,6 +1,7 @@
 //! Thresholds by which rest and depth are judged.
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::shares::{LARGE, NEGLIGIBLE, TINY};
 use halfgap_collision::{BodyId, Collision, Tolerances};
 
 impl Assembly {
@@ -29,7 +30,7 @@ impl Assembly {
     /// over.
     pub(crate) fn storm_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
-        let slow = (STORM_WAY * accuracy / self.settings.resolution_time).min(STORM_SLOW * velocity_tol);
+        let slow = (NEGLIGIBLE * accuracy / self.settings.resolution_time).min(LARGE * velocity_tol);
         slow.max(self.rest_speed())
     }
 
@@ -45,7 +46,7 @@ impl Assembly {
 
     /// True if the target zone between two bodies is so wide relative to them that their place in it can be seen.
     pub(crate) fn is_zone_seen(&self, bodies: [BodyId; 2]) -> bool {
-        self.settings.tolerances.accuracy > SEEN * self.largest_reach(bodies)
+        self.settings.tolerances.accuracy > TINY * self.largest_reach(bodies)
     }
 
     /// The acceleration of the scene [m/s^2]; zero if only contacts and connectors exert forces.
@@ -57,13 +58,3 @@ impl Assembly {
         }
     }
 }
-
-/// Half-width of a target zone above which it can be seen, as a fraction of the larger body's reach.
-const SEEN: f64 = 1e-4;
-
-/// Rows are at rest in a storm if they move within the resolution time by no more than this fraction of the half-width
-/// of the target zone.
-const STORM_WAY: f64 = 1e-3;
-
-/// Rows faster than this multiple of `velocity_tol` are not at rest even in a storm.
-const STORM_SLOW: f64 = 10.0;

@@ -7,14 +7,10 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::ends::{RailEnd, end_rooms};
 use crate::rigid::connectors::store::Connectors;
+use crate::rigid::shares::{ROUNDED, ROUNDS};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{ConnectorId, ConnectorKind, RailHint};
-
-/// Fraction of a lap, for rounding, by which the way to a stop may fall short of a lap and count as one.
-const PASSED: f64 = 1e-12;
-/// Number of times at which a point is sought along a segment: it goes round by less than half in between.
-const LOOKS: u32 = 8;
 
 impl Connectors {
     /// Hint for the place of a connector's row on its rail at a time. It tells the distance left before a stop, for the
@@ -45,7 +41,7 @@ impl Connectors {
     /// the stop does not hold it.
     fn within_lap(&self, id: ConnectorId, left: f64) -> f64 {
         let lap = self.connector(id).path().map_or(f64::INFINITY, |path| path.length());
-        if left >= (1.0 - PASSED) * lap { left - lap } else { left }
+        if left >= (1.0 - ROUNDED) * lap { left - lap } else { left }
     }
 
     /// Notes the place of a rail's point, for the rail and its stops: beyond a sharp corner the piece before it seems
@@ -108,8 +104,8 @@ impl Connectors {
         let (anchor, _) = connector.anchors();
         let (start, mut hint) = self.states[id.index()].follow?;
         let span = time.since(start);
-        for look in 1..=LOOKS {
-            let at = start.plus(span * f64::from(look) / f64::from(LOOKS));
+        for look in 1..=ROUNDS {
+            let at = start.plus(span * f64::from(look) / f64::from(ROUNDS));
             let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, at));
             let left = connector.measure_near(0, &a, &b, Some(&hint)).gap;
             let next = path.hint_near(a.pose.point_to_world(anchor.point), Some(&hint));

@@ -15,19 +15,12 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::pairs::{PairId, Pairs, Seen};
 use crate::rigid::contacts::touch::Touch;
+use crate::rigid::shares::{HUGE, LARGE, MAJOR};
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
 
-/// Multiple of the scene's acceleration with which forces may press bodies together: a pair that closes no faster than
-/// this makes it within its zone may be a low bounce.
-const FORCED: f64 = 1e3;
-/// That multiple for a pair of which a body has been struck meanwhile, as in a heap that many bodies deep. A faster
-/// pair bounces: else the energy of a blow would be lost, which an elastic body passes on and gets back at once.
-const STRUCK: f64 = 1e2;
 /// Number of feature pairs that are remembered for a pair of bodies.
 const MOST_SEEN: usize = 16;
-/// Height of a low bounce, as a multiple of the target gap.
-const LOW_GAPS: f64 = 10.0;
 /// Number of low bounces in a row after which elasticity no longer acts.
 const MOST_LOW: u32 = 1000;
 
@@ -68,7 +61,7 @@ fn low_bounces(assembly: &Assembly, seen: &Seen, gap: f64) -> u32 {
     // meantime.
     let back = way - (gap - seen.gap);
     let rise = if back > 0.0 { 0.25 * way * (way / back) } else { way };
-    let is_low = seen.gap + rise <= LOW_GAPS * assembly.settings().tolerances.target_gap;
+    let is_low = seen.gap + rise <= LARGE * assembly.settings().tolerances.target_gap;
     if is_low { seen.low.saturating_add(u32::from(seen.rate > assembly.rest_speed())) } else { 0 }
 }
 
@@ -124,7 +117,7 @@ pub(crate) fn has_stayed_low(
     let up = seen.rate.max(0.0);
     let lasted = assembly.now().since(seen.time);
     let rise = 0.5 * up * up * lasted / (up + down);
-    let most = if seen.low >= MOST_LOW { LOW_GAPS * target_gap } else { target_gap + accuracy };
+    let most = if seen.low >= MOST_LOW { LARGE * target_gap } else { target_gap + accuracy };
     // A pair that moved under a constant acceleration is back where it was (`went` is small). Else, as when
     // something has lifted it in between, it has stayed only if it is no faster than forces make it within the
     // zone. With contacts that carry impulses only it would then sink, so there only `went` counts.
@@ -135,9 +128,9 @@ pub(crate) fn has_stayed_low(
     };
     let is_low = || {
         if is_struck_since(assembly, pairs, pair, seen) {
-            forced(STRUCK)
+            forced(MAJOR)
         } else {
-            went <= most || forced(FORCED)
+            went <= most || forced(HUGE)
         }
     };
     seen.gap + rise <= most && is_low()

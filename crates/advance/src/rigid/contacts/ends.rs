@@ -85,7 +85,7 @@ impl Mechanism<'_> {
         if !self.is_corner_on_line(&sample, row.bodies, features, movings) {
             return false;
         }
-        self.lean(sample, row.bodies, features, movings) > LEAN_SHARE * self.tolerances.accuracy
+        self.lean(sample, row.bodies, features, movings) > 0.5 * CHANGE_SHARE * self.tolerances.accuracy
     }
 
     /// True if a contact outside of its features has left them: a corner that leans off its line has not.
@@ -138,7 +138,3 @@ impl Mechanism<'_> {
         (sample.excess_primary * primary).max(sample.excess_normal * normal)
     }
 }
-
-/// Fraction of `accuracy` above which a corner counts as leaning off its line: less than `CHANGE_SHARE`, at which the
-/// change is an event, so that it is one only once.
-const LEAN_SHARE: f64 = 0.5 * CHANGE_SHARE;

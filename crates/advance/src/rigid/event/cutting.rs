@@ -23,18 +23,14 @@ use crate::rigid::region::records::gap_of_cause;
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::{HALF_ZONE, MINOR};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_geometry::Relation;
 
-/// Error of the gap of the contact, rope or stop that fired above which an event's time is corrected, as a fraction of
-/// the accuracy.
-const TIME_SHARE: f64 = 1e-2;
 /// Largest number of corrections of an event's time.
 const MOST_CORRECTIONS: usize = 2;
-/// Fraction of the accuracy by which gaps after a repeated step may differ from those that the search saw.
-const SEEN_SHARE: f64 = 0.5;
 
 /// Source of the states of the bodies of a group that is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,7 +97,7 @@ fn corrected(
 ) -> Option<Time> {
     let (gap, rate) = gap_of_cause(assembly, connectors, cause, time)?;
     let error = gap - wanted?;
-    let counts = error.abs() > TIME_SHARE * assembly.settings().tolerances.accuracy;
+    let counts = error.abs() > MINOR * assembly.settings().tolerances.accuracy;
     (counts && rate < -assembly.settings().tolerances.velocity_tol).then(|| time.plus(-error / rate))
 }
 
@@ -133,7 +129,7 @@ pub(crate) fn passed(
 /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
 /// or, if the time is not corrected, any; or if a body lies within another that it did not touch.
 fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> bool {
-    let allowed = SEEN_SHARE * view.assembly.settings().tolerances.accuracy;
+    let allowed = HALF_ZONE * view.assembly.settings().tolerances.accuracy;
     let fired = gap_of_cause(view.assembly, view.connectors, region.cause(), time).zip(gap);
     if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
         return true;

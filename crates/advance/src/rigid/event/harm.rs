@@ -9,10 +9,10 @@ use crate::rigid::event::life::undo_groups;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::settling::settle_and_still;
 use crate::rigid::event::work::EventWork;
-use crate::rigid::held::settle::HASTY_SHARE;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::measure_touches;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::NEGLIGIBLE;
 
 /// Makes groups, and makes them anew if holding their rows does harm. If one of them cannot make a step, or its
 /// projection brings contacts nearer by more than their zone, contacts that nearly depend on others are spared, as
@@ -75,7 +75,7 @@ fn harm_done(assembly: &Assembly, EventWork { region, settling, .. }: &EventWork
         is_moved |= row.gap != record.geometry.distance;
         opening = opening.max(record.motion.normal_velocity);
     }
-    let is_stopped = opening > HASTY_SHARE * assembly.rest_speed();
+    let is_stopped = opening > NEGLIGIBLE * assembly.rest_speed();
     let mut harm = [false; 2];
     if is_moved || is_stopped {
         for (touch, &(gap_before, rate_before)) in region.touches().iter().zip(region.motions()) {

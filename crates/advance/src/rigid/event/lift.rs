@@ -11,6 +11,7 @@ use crate::rigid::group::groups::Groups;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::{ROUNDS, SMALL};
 use crate::rigid::sinking::depth::Sinking;
 use glam::DVec2;
 use halfgap_collision::BodyState;
@@ -18,15 +19,16 @@ use halfgap_collision::BodyState;
 /// Moves the bodies of a region, which are in flight, so that no gap is less than its target; bodies that they come
 /// to touch join the region.
 pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
-    let (mut full, mut short) = (0, 0);
-    while full < ROUNDS && short < SHORT_ROUNDS {
+    let (mut full, mut rounds) = (0, 0);
+    while full < FULL_ROUNDS && rounds < ROUNDS {
         let now = rooms.assembly.now();
         for &body in work.region.bodies() {
             book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
         }
         let before = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
         let Some(share) = move_apart(&mut rooms.assembly, &mut rooms.sinking, work) else { break };
-        *(if share == 1.0 { &mut full } else { &mut short }) += 1;
+        rounds += 1;
+        full += u32::from(share == 1.0);
         let after = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
         rooms.books.book_projection(after - before);
         for &body in work.region.bodies() {
@@ -56,7 +58,7 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
     shifts.resize(region.bodies().len(), [0.0; 3]);
     settling.add_responses(region, rows, |body| assembly.inertia(body), shifts);
     let longest = longest_way(assembly, region, shifts);
-    let share = if longest.1 > LONGEST_WAY { LONGEST_WAY / longest.1 } else { 1.0 };
+    let share = if longest.1 > SMALL { SMALL / longest.1 } else { 1.0 };
     sinking.note_move(share * longest.0);
     for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts.iter()) {
         let state = assembly.trajectory(body).unwound_at(assembly.now());
@@ -114,10 +116,4 @@ fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking,
 }
 
 /// Number of rounds of putting back that go all the way: gaps are not linear in the displacement, but nearly.
-const ROUNDS: usize = 3;
-
-/// Number of further rounds of putting back that go a fraction of the way.
-const SHORT_ROUNDS: usize = 5;
-
-/// Longest way of a body in one round, as a fraction of its reach: farther, gaps are not nearly linear.
-const LONGEST_WAY: f64 = 0.1;
+const FULL_ROUNDS: u32 = 3;

@@ -9,10 +9,8 @@ use crate::rigid::held::hops::any_held_hops;
 use crate::rigid::held::settle::settle;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::ROUNDS;
 use crate::rigid::zeno::repeats::has_pulled;
-
-/// Largest number of rounds in which the low hops of one event are stilled.
-const HOP_ROUNDS: u32 = 4;
 
 /// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.
 pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
@@ -22,13 +20,13 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
     let is_on = rooms.assembly.remedies().is_on(Remedy::LowHops);
     let may_hop = is_on && work.region.cause() != Cause::Start && !work.region.is_hasty();
     settle_region(rooms, work, may_hop)?;
-    for round in 1..=HOP_ROUNDS {
+    for round in 1..=ROUNDS {
         if !is_on || !any_held_hops(&rooms.assembly, &work.region, &work.settling) {
             break;
         }
         let is_stilled =
             still_hops(&mut rooms.assembly, &rooms.connectors, &rooms.pairs, &mut rooms.books, work);
-        let with_hops = is_stilled && may_hop && round < HOP_ROUNDS;
+        let with_hops = is_stilled && may_hop && round < ROUNDS;
         settle_region(rooms, work, with_hops)?;
     }
     Ok(())

@@ -18,9 +18,8 @@ use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::event::impacting::handle_impact;
 use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::region::cause::Cause;
-use crate::rigid::sinking::depth::{
-    BEHIND, DEEP_SHARE, DEEPEST_SHARE, FIRST_SHARE, FURTHER_SHARE, Sinking, room_to_sink,
-};
+use crate::rigid::shares::NEARLY_ALL;
+use crate::rigid::sinking::depth::{BEHIND, DEEP_SHARE, FIRST_SHARE, FURTHER_SHARE, Sinking, room_to_sink};
 use crate::time::Time;
 use halfgap_collision::Tolerances;
 use halfgap_geometry::FeatureId;
@@ -41,7 +40,7 @@ pub(crate) fn sinks(rooms: &mut Rooms, pair: PairId, features: [FeatureId; 2]) -
     let room = room_to_sink(&rooms.assembly, bodies);
     let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
     let is_fast = -rate > tolerances.velocity_tol;
-    let is_deepest = gap < tolerances.target_gap - DEEPEST_SHARE * room;
+    let is_deepest = gap < tolerances.target_gap - NEARLY_ALL * room;
     if is_deepest
         || is_fast
             && (is_deep || !has_stayed_low(&rooms.assembly, &rooms.pairs, pair, features, -rate, &tolerances))
@@ -130,6 +129,7 @@ fn keep_what_is_sunk(assembly: &Assembly, sinking: &mut Sinking, agenda: &mut Ag
 mod tests {
     use super::*;
     use crate::rigid::event::life::dissolve;
+    use crate::rigid::shares::NEARLY_ALL;
     use crate::rigid::sinking::depth::sinks_to;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::BodyId;
@@ -150,10 +150,10 @@ mod tests {
         };
         assert!((sinks_by(0.0) * room / rooms.assembly.sink() - 1.0).abs() < 1e-9, "it has not sunk yet");
         for depth in [0.5, 0.75] {
-            assert!((sinks_by(depth) - (DEEPEST_SHARE - depth) * FURTHER_SHARE).abs() < 1e-9);
+            assert!((sinks_by(depth) - (NEARLY_ALL - depth) * FURTHER_SHARE).abs() < 1e-9);
         }
         assert!(
-            (sinks_by(DEEPEST_SHARE) * room / rooms.assembly.sink() - 1.0).abs() < 1e-9,
+            (sinks_by(NEARLY_ALL) * room / rooms.assembly.sink() - 1.0).abs() < 1e-9,
             "no farther than that"
         );
     }

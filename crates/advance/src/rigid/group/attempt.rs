@@ -9,17 +9,8 @@ use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::settings::StepControl;
+use crate::rigid::shares::{ROUNDINGS, ROUNDS, SMALL, TINY};
 
-/// A step size has collapsed below this multiple of machine epsilon times the clock, or times the time in which a body
-/// of the scene's speed moves by [`StepControl::length`], if that is less. The clock itself resolves far shorter times.
-const COLLAPSED: f64 = 64.0;
-/// Factor by which a step is shortened where its state is not finite.
-const RETREAT: f64 = 0.1;
-/// Number of lengths that are tried so that no stage of a step comes near a bifurcation point (see `singular`).
-const MOST_PLACEMENTS: usize = 4;
-/// Contact forces are steady if they vary along a step by no more than this fraction of their size: the next step may
-/// be longer by the inverse of it.
-const STEADY_PART: f64 = 1e-4;
 /// Largest factor by which steps of smooth motions grow at once: after larger ones errors follow the tolerance less
 /// well.
 pub(crate) const STEADY_GROWTH: f64 = 2.0;
@@ -44,7 +35,7 @@ struct Attempt {
     /// The length [s] that errors ask for; the step is made shorter if a bifurcation point of a loop is near.
     natural: f64,
     /// Number of times that the step was placed around a bifurcation point.
-    placements: usize,
+    placements: u32,
     /// It is shorter than errors ask for, because of a bifurcation point.
     is_led: bool,
     /// A longer one has erred by too much.
@@ -72,7 +63,7 @@ impl Dynamics<'_> {
         let method = tools.stepper.method();
         let proposed = self.proposed_step(control, method);
         let shortest =
-            COLLAPSED * f64::EPSILON * self.start.seconds().abs().min(control.length / control.speed);
+            ROUNDINGS * f64::EPSILON * self.start.seconds().abs().min(control.length / control.speed);
         let work_scale = self.work_scale(control);
         let mut attempt = Attempt::new(proposed);
         let mut may_ask_again = true;
@@ -105,7 +96,7 @@ impl Dynamics<'_> {
                 error = error.max(self.work_error(tools.stepper, tools.scales.len(), work_scale));
             }
             if !error.is_finite() {
-                (attempt.step, attempt.is_rejected) = (attempt.step * RETREAT, true);
+                (attempt.step, attempt.is_rejected) = (attempt.step * SMALL, true);
                 continue;
             }
             if self.keeps(error) || self.group.kept.passes_astride(attempt.step, error, control.local_error) {
@@ -145,7 +136,7 @@ impl Dynamics<'_> {
     fn places_better(&mut self, attempt: &mut Attempt, method: Method) -> bool {
         // Without a tree the errors of a step that begins near a bifurcation point are rounding, and fall as it grows.
         let most = if self.group.tree.exists() { attempt.step } else { attempt.natural };
-        if attempt.placements >= MOST_PLACEMENTS {
+        if attempt.placements >= ROUNDS {
             return false;
         }
         let Some(better) = self.group.kept.better_length(attempt.step, most, method) else { return false };
@@ -160,7 +151,7 @@ impl Dynamics<'_> {
         self.group.kept.note_accepted(step);
         self.group.kept.is_led = is_led;
         // Force laws may change elsewhere in a way that nothing here foretells.
-        let is_steady = self.group.laws.is_empty() && STEADY_PART * self.growth_by_forces() >= 1.0;
+        let is_steady = self.group.laws.is_empty() && TINY * self.growth_by_forces() >= 1.0;
         self.group.steady_step = is_steady.then_some(step);
         let accepted = Accepted { length: step, error };
         // A step that was shortened because of a bifurcation point tells nothing about those after it.

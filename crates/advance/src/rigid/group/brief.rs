@@ -7,10 +7,6 @@ use crate::rigid::group::stepping::{BRIEF_METHOD, Stepping};
 use crate::rigid::group::stiffness::Stiffness;
 use crate::time::Time;
 
-/// A group is expected to last this multiple of the time that the last groups of its bodies lasted, and is brief if a
-/// full step is longer than this multiple of that.
-pub(crate) const BRIEF: f64 = 4.0;
-
 /// Least length of a brief step, as a fraction of a full one: to cut a step short costs less than to make very many.
 pub(crate) const BRIEFEST: f64 = 1.0 / 32.0;
 

@@ -4,14 +4,8 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
+use crate::rigid::shares::{HUGE, MAJOR};
 use halfgap_collision::BodyId;
-
-/// Energy that a step may lose or gain, as a multiple of `local_error` times the kinetic energy. Where rows nearly
-/// depend on each other, or near a centre of attraction, errors that are rounding elsewhere do work, and no error
-/// estimate shows it.
-const LOST_ERRORS: f64 = 1e2;
-/// Energy that a step may lose or gain beyond that, as a multiple of machine epsilon times the whole energy.
-const LOST_ROUNDINGS: f64 = 1e3;
 
 /// Energy [J] of a group's bodies.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +65,7 @@ impl Dynamics<'_> {
         let usual = control.speed * control.speed * masses.sum::<f64>();
         let moving = usual + before.kinetic + end.kinetic;
         let rounding = f64::EPSILON * (before.total.abs() + after.abs());
-        lost / (LOST_ERRORS * control.local_error * moving + LOST_ROUNDINGS * rounding)
+        lost / (MAJOR * control.local_error * moving + HUGE * rounding)
     }
 
     /// Energy of the group's bodies in a state.

@@ -7,17 +7,12 @@ use crate::ode::StiffnessEstimate;
 use crate::rigid::group::attempt::StepFailure;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::tools::Tools;
+use crate::rigid::shares::{ROUNDS, SEVERAL, WORTHWHILE};
 
 /// Number of shorter steps that are tried if a step has an excess above 1.
-const SHORTENINGS: usize = 2;
-/// Number of shorter steps that are tried as long as the excess is above [`DEEP`].
-const DEEP_SHORTENINGS: usize = 5;
-/// Number of shorter steps that are tried then if the last of them was [`WORTHWHILE`].
-const MOST_SHORTENINGS: usize = 8;
-/// Excess [-] above which bodies would overlap along the dense output.
-const DEEP: f64 = 4.0;
-/// A shorter step is worthwhile if it leaves less than this fraction of the excess of the one before.
-const WORTHWHILE: f64 = 0.5;
+const SHORTENINGS: u32 = 2;
+/// Number of shorter steps that are tried as long as the excess is above [`SEVERAL`].
+const DEEP_SHORTENINGS: u32 = 5;
 
 impl Dynamics<'_> {
     /// Extends the group by a step whose dense output, if it is asked for, does not oscillate. Near a bifurcation point
@@ -73,8 +68,8 @@ impl Dynamics<'_> {
             }
             let swing = told.map_or(0.0, |told| told.dense_error);
             let excess = excess.max(swing).max(self.lost_energy(&steps, energy));
-            let most = if excess < WORTHWHILE * before { MOST_SHORTENINGS } else { DEEP_SHORTENINGS };
-            let is_worthwhile = excess > DEEP && tries < most;
+            let most = if excess < WORTHWHILE * before { ROUNDS } else { DEEP_SHORTENINGS };
+            let is_worthwhile = excess > SEVERAL && tries < most;
             before = excess;
             if tries >= SHORTENINGS && excess > 1.0 && !is_worthwhile {
                 // An error that shorter steps do not reduce is rounding, or comes from rows that contradict each other.
@@ -153,13 +148,13 @@ mod tests {
 
     #[test]
     fn rows_that_all_but_depend_on_each_other_do_not_throw_their_bodies_about() {
-        /// Angle between the rods [rad].
-        const ANGLE: f64 = 1e-5;
-        /// Error of the second rod's length [m].
-        const ERROR: f64 = 1e-7;
-        /// Largest distance [m] by which the disc may move for that error.
-        const WAY: f64 = 1e-5;
-        let mut rooms = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, ANGLE)]);
+        // Angle between the rods [rad].
+        let angle: f64 = 1e-5;
+        // Error of the second rod's length [m].
+        let error: f64 = 1e-7;
+        // Largest distance [m] by which the disc may move for that error.
+        let way: f64 = 1e-5;
+        let mut rooms = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, angle)]);
         let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
         let moved = with_group(
             &rooms.assembly,
@@ -167,14 +162,14 @@ mod tests {
             &mut rooms.groups,
             &mut group,
             |dynamics, tools| {
-                dynamics.group.rows[1].gap += ERROR;
+                dynamics.group.rows[1].gap += error;
                 let before = dynamics.group.end_state.clone();
                 dynamics.end_on_rows(tools);
                 (dynamics.group.end_state[1] - before[1]).abs()
             },
         );
         // Correcting the lengths of both rods would take a centimetre across them.
-        assert!(moved < WAY, "{moved} m");
+        assert!(moved < way, "{moved} m");
     }
 
     #[test]
@@ -202,22 +197,22 @@ mod tests {
 
     #[test]
     fn a_motion_that_swings_between_the_ends_of_a_step_makes_it_shorter() {
-        /// Rate [1/s] at which the spin decays.
-        const RATE: f64 = 1e6;
-        /// Product of that rate and the length of a step whose error estimate does not show the decay.
-        const UNTOLD: f64 = 5.75;
+        // Rate [1/s] at which the spin decays.
+        let rate: f64 = 1e6;
+        // Product of that rate and the length of a step whose error estimate does not show the decay.
+        let untold: f64 = 5.75;
         // Ten times the allowed error: the disc moves at 2 m/s and has a radius of 0.5 m.
         let spin = 10.0 * FINE.steps.local_error * 2.0 / 0.5;
-        let mut rooms = turning_disc_on_rods(&[DVec2::ZERO], spin, RATE);
+        let mut rooms = turning_disc_on_rods(&[DVec2::ZERO], spin, rate);
         let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
-        group.next_step = Some(UNTOLD / RATE);
+        group.next_step = Some(untold / rate);
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.extend(tools).expect("it decays");
-            assert_eq!(dynamics.group.span, UNTOLD / RATE);
-            dynamics.group.next_step = Some(UNTOLD / RATE);
+            assert_eq!(dynamics.group.span, untold / rate);
+            dynamics.group.next_step = Some(untold / rate);
             dynamics.extend_on_rows(tools).expect("it decays");
         });
-        assert!(group.span < 0.8 * UNTOLD / RATE, "{} s", group.span);
+        assert!(group.span < 0.8 * untold / rate, "{} s", group.span);
     }
 
     #[test]

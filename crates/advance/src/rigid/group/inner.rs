@@ -3,6 +3,7 @@
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::settings::StepControl;
+use crate::rigid::shares::HALF_ZONE;
 
 impl Dynamics<'_> {
     /// Largest error of held rows between the ends of the segment, where dense output is less exact, as a multiple of
@@ -10,7 +11,7 @@ impl Dynamics<'_> {
     /// steps may make. Notes the largest error of a connector and the least gap of a contact.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {
         (self.group.largest_error, self.group.least_gap) = (0.0, None);
-        let (least, most) = (INNER_SHARE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
+        let (least, most) = (HALF_ZONE * accuracy, INNER_ERRORS * steps.local_error * steps.length);
         let mut excess = 0.0f64;
         if self.group.rows.is_empty() {
             return excess;
@@ -28,9 +29,6 @@ impl Dynamics<'_> {
         excess.max(self.group.largest_error / most.max(least))
     }
 }
-
-/// Error of a held contact's gap within a step that is allowed, as a fraction of the accuracy.
-const INNER_SHARE: f64 = 0.5;
 
 /// Error of a connector within a step that is allowed, as a multiple of the error of a step: dense output errs some
 /// tens of times more than the ends of steps, and much more where connectors determine angles poorly.

@@ -2,6 +2,7 @@
 
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::Stage;
+use crate::rigid::shares::ROUNDED;
 use halfgap_collision::BodyId;
 
 impl Dynamics<'_> {
@@ -10,7 +11,7 @@ impl Dynamics<'_> {
     pub(super) fn level(&mut self) {
         let all: f64 = self.stage.forces.iter().map(|force| force.abs()).sum();
         let mut bodies = self.stage.accelerations.iter().zip(&self.group.bodies);
-        if !bodies.any(|(acceleration, &body)| self.is_level(acceleration, body, LEVEL * all)) {
+        if !bodies.any(|(acceleration, &body)| self.is_level(acceleration, body, ROUNDED * all)) {
             return;
         }
         let Stage { forces, gross, .. } = &mut *self.stage;
@@ -23,7 +24,7 @@ impl Dynamics<'_> {
         levels.clear();
         let bodies = self.stage.accelerations.iter().zip(&self.group.bodies).zip(&self.stage.gross);
         levels.extend(
-            bodies.map(|((acceleration, &body), gross)| self.is_level(acceleration, body, LEVEL * gross)),
+            bodies.map(|((acceleration, &body), gross)| self.is_level(acceleration, body, ROUNDED * gross)),
         );
         self.stage.levels = levels;
         self.keep_pushed();
@@ -60,7 +61,7 @@ impl Dynamics<'_> {
                 let row = &jacobian[3 * side..3 * side + 3];
                 let pushed: f64 = row.iter().zip(&accelerations[level]).map(|(j, a)| j * a).sum();
                 let inertia = trajectories[self.group.bodies[other].index()].body();
-                if pushed.abs() > LEVEL * gross[other] * inertia.inverse_mass {
+                if pushed.abs() > ROUNDED * gross[other] * inertia.inverse_mass {
                     levels[level] = false;
                     any = true;
                 }
@@ -68,7 +69,3 @@ impl Dynamics<'_> {
         }
     }
 }
-
-/// Fraction of the sum of the rows' forces on a body below which their resultant is rounding; a slope [rad] below it is
-/// level.
-pub(crate) const LEVEL: f64 = 1e-12;

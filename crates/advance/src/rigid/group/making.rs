@@ -4,10 +4,11 @@ use crate::ode::Method;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::{Connectors, Stop, is_rope};
 use crate::rigid::contacts::rows::{HeldRow, RowSource};
-use crate::rigid::group::brief::{BRIEF, BRIEFEST, CUT_SHARE};
+use crate::rigid::group::brief::{BRIEFEST, CUT_SHARE};
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::state::{Group, Work};
 use crate::rigid::group::stiffness::Stiffness;
+use crate::rigid::shares::SEVERAL;
 use halfgap_collision::{BodyId, ConnectorId};
 
 impl Group {
@@ -104,8 +105,8 @@ impl Group {
             RowSource::Contact(_) => false,
         });
         let lasted = pasts.map(|past| past.lasted).fold(0.0, f64::max);
-        let soon = BRIEF * lasted;
-        let is_brief = |step: f64| !self.has_kinks && BRIEF * soon < step && self.stiffness.allows(soon);
+        let soon = SEVERAL * lasted;
+        let is_brief = |step: f64| !self.has_kinks && SEVERAL * soon < step && self.stiffness.allows(soon);
         if let Some(step) = self.next_step.filter(|&step| is_brief(step)) {
             self.is_brief = true;
             (self.next_step, self.full_step) = (Some(soon.max(BRIEFEST * step)), Some(step));

@@ -1,32 +1,22 @@
 //! Scales of a group's steps: its length, its speed, its rounding, and the errors that are just acceptable.
 
-use crate::ode::Stepper;
+use crate::ode::{Method, Stepper};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
+use crate::rigid::shares::{HALF_ZONE, LARGE, WAY_OF_A_STEP};
 use glam::DVec2;
 use halfgap_collision::BodyId;
 
-/// Exponent of the error in the first step: one over the order of the default method.
-const FIRST_STEP_POWER: f64 = 1.0 / 8.0;
 /// Fraction of `accuracy` by which rounding may move a body along a step.
 pub(crate) const ROUNDING_SHARE: f64 = 1.0 / 8.0;
-/// Fraction of `accuracy` by which a step of bodies in contact may err: with more, they would hit others too late.
-const CLEAR_SHARE: f64 = 0.5;
 /// Fraction of [`StepControl::speed`] above which a group moves: the squares of lower speeds underflow.
 const STANDSTILL: f64 = 1e-140;
 /// Energy that rounding of positions may add in a step, as a multiple of `local_error` times the square of the scene's
 /// speed: with more, no choice of steps conserves energy.
 const UNRESOLVED: f64 = 1e4;
-/// Fraction of the length over which forces of laws vary by which bodies may move in a step of a group with contacts.
-const APPROACH: f64 = 0.5;
-/// The same fraction in a group without contacts.
-const FREE_APPROACH: f64 = 1.0;
-/// Least number of target gaps over which forces on bodies in contact must vary: over fewer, the gaps of the contacts
-/// would decide on the forces.
-const TOLD_FROM_GAP: f64 = 10.0;
 
 impl Dynamics<'_> {
     /// Tells the stepper the error that each component may have.
@@ -51,7 +41,7 @@ impl Dynamics<'_> {
     pub(super) fn longest_lawful_step(&self) -> f64 {
         let Group { bodies, laws, rows, state, force_length, field_length, .. } = &*self.group;
         let is_free = rows.iter().all(|row| row.bilateral);
-        let way = if is_free { FREE_APPROACH * field_length } else { APPROACH * force_length };
+        let way = if is_free { *field_length } else { WAY_OF_A_STEP * force_length };
         if way.is_infinite() {
             return f64::INFINITY;
         }
@@ -79,7 +69,7 @@ impl Dynamics<'_> {
         }
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let gap = self.physics.mechanism.tolerances.target_gap;
-        if any_contact && self.group.force_length <= TOLD_FROM_GAP * gap {
+        if any_contact && self.group.force_length <= LARGE * gap {
             return false;
         }
         let rounding = self.rounding() * self.group.free_acceleration;
@@ -157,7 +147,7 @@ impl Dynamics<'_> {
     pub(super) fn first_step(&self, control: &StepControl) -> f64 {
         let speed = self.speed(control);
         let time = if speed > 0.0 { self.length(control) / speed } else { 1.0 };
-        time * libm::pow(control.local_error, FIRST_STEP_POWER)
+        time * libm::pow(control.local_error, 1.0 / f64::from(Method::default().order()))
     }
 
     /// Error [J] of a work that is just acceptable: the error of the energy that acceptable errors of velocities make.
@@ -190,7 +180,7 @@ impl Dynamics<'_> {
         let share = self.depth_share(control);
         let least = self.least_errors(share, speed);
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
-        let clearance = any_contact.then_some(CLEAR_SHARE * self.physics.mechanism.tolerances.accuracy);
+        let clearance = any_contact.then_some(HALF_ZONE * self.physics.mechanism.tolerances.accuracy);
         // A group without motion and forces has no scale, and no error.
         let or_infinite = |scale: f64| if scale > 0.0 { scale } else { f64::INFINITY };
         scales.clear();

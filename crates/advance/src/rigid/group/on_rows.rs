@@ -7,9 +7,7 @@
 
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::projection::ALL_OF_IT;
-
-/// Largest number of Newton steps for one stage.
-const MOST_ROUNDS: usize = 8;
+use crate::rigid::shares::ROUNDS;
 
 impl Dynamics<'_> {
     /// Finds the rates of a state once it is moved onto the held rows.
@@ -33,7 +31,7 @@ impl Dynamics<'_> {
         // Near a bifurcation point every digit counts; elsewhere the next round adds what rough forces lack.
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..ROUNDS {
             let error = self.measure_errors(state, &mut row_rates);
             if is_passing && error <= noise {
                 break;

@@ -8,22 +8,13 @@ use crate::rigid::group::measures::ROUNDING_SHARE;
 use crate::rigid::group::state::Group;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::settings::StepControl;
+use crate::rigid::shares::{ROUNDINGS, ROUNDS, TINY, WORTHWHILE};
 
-/// Largest number of Newton steps of one projection.
-const PROJECTIONS: usize = 5;
 /// Largest number of Newton steps where rows are soft or a bifurcation point may be near.
-const SOFT_PROJECTIONS: usize = 20;
-/// Another of those is made if the last one left less than this fraction of the error.
-const WORTHWHILE: f64 = 0.5;
+const SOFT_PROJECTIONS: u32 = 20;
 /// Multiple of the rows' error: where bodies were moved by more, the rates of the rows are measured anew. Rows that
 /// nearly depend on each other carry forces that would do work on the difference.
 const FAR: f64 = 8.0;
-/// Fraction of the length L up to which moving the bodies of a loop near a bifurcation point leaves the rates of its
-/// rows as they are.
-const ROUNDED: f64 = 64.0 * f64::EPSILON;
-/// A row with the kept share s^2 moves bodies by its error over s; by more than this fraction of s L the motion would
-/// be another one.
-const BENT: f64 = 1e-4;
 /// Error of a gap by rounding, as a multiple of the rounding of positions.
 const GAP_ROUNDINGS: f64 = 4.0;
 /// Largest change of velocities by a projection, as a multiple of the group's speed; a larger one corrects nothing. To
@@ -63,7 +54,7 @@ impl Dynamics<'_> {
         let is_soft = self.group.held.is_soft() || is_singular;
         // Small errors of several loops are corrected as long as that does not change the motion.
         let noise = self.passes_by_rows().then(|| self.noise(&end, length));
-        let rounds = if is_soft { SOFT_PROJECTIONS } else { PROJECTIONS };
+        let rounds = if is_soft { SOFT_PROJECTIONS } else { ROUNDS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
             let error = self.measure_errors(&end, &mut rates);
@@ -73,12 +64,12 @@ impl Dynamics<'_> {
             // target zone do not justify a change beyond it.
             let way = self.largest_change();
             let is_little = error < ROUNDING_SHARE * zone && way > zone;
-            let is_sound = noise.is_some_and(|noise| error >= noise && way.powi(2) <= BENT * error * length);
+            let is_sound = noise.is_some_and(|noise| error >= noise && way.powi(2) <= TINY * error * length);
             if way.powi(2) > error * length || (is_little && !is_sound) {
                 break;
             }
             self.change(&mut end, 0);
-            is_far = if is_singular { way > ROUNDED * length } else { way > FAR * error };
+            is_far = if is_singular { way > ROUNDINGS * f64::EPSILON * length } else { way > FAR * error };
             // Newton's method squares the relative error.
             let is_enough = if is_soft {
                 error <= f64::EPSILON * length || (round > 0 && error > WORTHWHILE * before)
@@ -107,7 +98,7 @@ impl Dynamics<'_> {
 
     /// Error [m] of a row that rounding may leave in a state on the rows.
     pub(crate) fn noise(&self, state: &[f64], length: f64) -> f64 {
-        (ROUNDED * length).max(GAP_ROUNDINGS * self.rounding_in(state))
+        (ROUNDINGS * f64::EPSILON * length).max(GAP_ROUNDINGS * self.rounding_in(state))
     }
 
     /// Measures the rows in a state and factorises. Leaves the error [m] of each gap in the stage's offsets, its rate

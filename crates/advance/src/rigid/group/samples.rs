@@ -16,3 +16,8 @@ pub(crate) const NODES: usize = 5;
 /// Number of samples between the start of a segment and its first node: a function that starts at nearly zero dips at
 /// once or, mostly, not at all.
 pub(crate) const EARLY: usize = 5;
+
+/// Index of the middle node of a segment, for polynomials whose argument is zero there.
+pub(crate) const fn middle_node() -> f64 {
+    (NODES - 1) as f64 / 2.0
+}

@@ -8,11 +8,10 @@ use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
+use crate::rigid::shares::SMALL;
 
 /// Upper bound [s] of all steps: beyond it the clock resolves no motion.
 pub(crate) const LONGEST_STEP: f64 = 1e12;
-/// Error norm of a step up to which its dense output counts as exact.
-const DENSE_ERROR: f64 = 0.1;
 /// An error e(s) that starts as s^2, s the fraction of the step, is taken to satisfy e(s) <= 16 s^2 e(1/2).
 const EARLY_SHARE: f64 = 16.0;
 
@@ -67,7 +66,7 @@ impl Dynamics<'_> {
         let part = offset / self.group.span;
         let share = (EARLY_SHARE * part * part).min(1.0);
         self.group.stepping() != Stepping::Stiff
-            && self.group.accepted.is_some_and(|step| share * step.error <= DENSE_ERROR)
+            && self.group.accepted.is_some_and(|step| share * step.error <= SMALL)
     }
 
     /// Ends the segment at an offset [s] within it, by its dense output.

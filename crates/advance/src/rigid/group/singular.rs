@@ -14,9 +14,8 @@
 //! or only comes near one, shows in how well the rows are kept along the step (`extending`).
 
 use crate::ode::Method;
+use crate::rigid::shares::{SEVERAL, SMALL};
 
-/// A stage is near a bifurcation point if it is less than this fraction of the step away from it.
-const CLOSE: f64 = 0.1;
 /// A step comes to a bifurcation point if the root of the least kept share falls to this fraction of its largest value.
 const LOW: f64 = 0.35;
 /// A bifurcation point may be ahead if that root has fallen to this fraction of its largest value.
@@ -25,12 +24,7 @@ const LOWER: f64 = 0.7;
 const NEAR: f64 = 0.15;
 /// A step longer than this multiple of the way to a bifurcation point passes it before its first stage.
 const EARLY: f64 = 40.0;
-/// Least length of a step that ends short of a bifurcation point, as a fraction of the way there. Unless that is
-/// longer, it ends where a next step of the full length goes astride.
-const LEAST_WAY: f64 = 0.1;
 
-/// Error norm up to which a step astride of a bifurcation point is accepted: to come nearer to the point costs more.
-const ASTRIDE_ERROR: f64 = 4.0;
 /// Error up to which a step astride is accepted if shorter ones err by no less, relative to the length and speed that
 /// errors of steps are relative to: that is rounding.
 const ROUNDING: f64 = 1e-7;
@@ -173,7 +167,7 @@ impl Kept {
     pub(crate) fn better_length(&self, length: f64, most: f64, method: Method) -> Option<f64> {
         let (point, away) = self.point()?;
         let better = led(point, most, method)?;
-        (away <= CLOSE * length || (point > length && better < length)).then_some(better)
+        (away <= SMALL * length || (point > length && better < length)).then_some(better)
     }
 
     /// True if a step astride of a bifurcation point, whose error norm is too large, is accepted all the same: its
@@ -186,7 +180,7 @@ impl Kept {
         let before = self.missed.replace(error);
         let is_rounding = before.is_some_and(|before| error >= before);
         let most = if is_rounding { ROUNDING / local_error } else { 0.0 };
-        let passes = error <= most.max(ASTRIDE_ERROR);
+        let passes = error <= most.max(SEVERAL);
         self.passed = passes.then_some(error);
         passes
     }
@@ -216,7 +210,7 @@ impl Kept {
 
     /// True if a step goes astride of a bifurcation point: passes it far from its stages.
     fn is_astride(&self, length: f64) -> bool {
-        self.point().is_some_and(|(point, away)| point < length && away > CLOSE * length)
+        self.point().is_some_and(|(point, away)| point < length && away > SMALL * length)
     }
 }
 
@@ -227,7 +221,7 @@ fn led(point: f64, length: f64, method: Method) -> Option<f64> {
     let middle = method.middle_between_stages()?;
     let is_at_start = point <= 0.0 || EARLY * point <= length;
     let astride = point / middle;
-    let short_of_it = (point - middle * length).max(LEAST_WAY * point);
+    let short_of_it = (point - middle * length).max(SMALL * point);
     (!is_at_start).then_some(if astride <= length { astride } else { short_of_it })
 }
 
@@ -275,7 +269,7 @@ mod tests {
         }
         // If the point is nearly in the middle, the step still goes part of the way.
         let better = seen(1.0, 0.57, 0.0).better_length(1.0, 1.0, METHOD).expect("a stage is near");
-        assert!(better >= LEAST_WAY * 0.56, "{better}");
+        assert!(better >= SMALL * 0.56, "{better}");
     }
 
     #[test]
@@ -290,13 +284,13 @@ mod tests {
 
     #[test]
     fn an_error_that_shorter_steps_do_not_mend_passes_astride() {
-        const LOCAL_ERROR: f64 = 1e-9;
+        let local_error: f64 = 1e-9;
         let mut kept = seen(1.0, 0.46, 0.0);
-        assert!(kept.passes_astride(1.0, 3.0, LOCAL_ERROR));
+        assert!(kept.passes_astride(1.0, 3.0, local_error));
         assert_eq!(kept.allowance(), 3.0);
         kept.note_accepted(1.0);
         for (error, passes) in [(20.0, false), (10.0, false), (15.0, true), (1e4, false)] {
-            assert_eq!(kept.passes_astride(1.0, error, LOCAL_ERROR), passes, "{error}");
+            assert_eq!(kept.passes_astride(1.0, error, local_error), passes, "{error}");
         }
         // With a coarse tolerance an error norm above 4 is not rounding.
         let mut kept = seen(1.0, 0.46, 0.0);
@@ -306,7 +300,7 @@ mod tests {
         }
         // A step that is not astride is rejected as usual.
         for point in [0.3, 1.2] {
-            assert!(!seen(1.0, point, 0.0).passes_astride(1.0, 3.0, LOCAL_ERROR), "{point}");
+            assert!(!seen(1.0, point, 0.0).passes_astride(1.0, 3.0, local_error), "{point}");
         }
     }
 

@@ -11,24 +11,14 @@ use crate::rigid::group::state::Group;
 use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::group::tools::Tools;
+use crate::rigid::shares::{LARGE, NEARLY_ALL, ROUNDS, SMALL, WORTHWHILE};
 use glam::DVec2;
 
-/// A step is held up if the fastest rate times its length comes to this fraction of the stability limit.
-const HELD_UP: f64 = 0.9;
-/// That fraction where errors may be rounding: steep forces amplify rounding in an explicit method however short its
-/// steps, but not in an implicit one.
-const ROUGH_HELD_UP: f64 = 0.1;
-/// A step is far from held up below this fraction of the stability limit.
-const FAR: f64 = 0.5;
 /// Number of explicit steps without an estimate after one that was far from held up.
 const UNTOLD_STEPS: u32 = 15;
-/// Steps are estimated sooner if they shrink below this fraction of the last estimated one: their limit may be new.
-const SHRUNK: f64 = 0.5;
 /// Number by which held-up steps must exceed others before implicit ones are tried: doubled after each trial in vain,
 /// and 1 where implicit steps have served before.
 const TELLING_STEPS: u32 = 8;
-/// Largest number of such doublings.
-const MOST_DOUBLINGS: u32 = 6;
 /// Largest number of state components (works excluded) for implicit steps: the equations of more would cost too much.
 const MOST_NUMBERS: usize = 600;
 /// Number of evaluations of rates in an explicit step of the default method, with its dense output.
@@ -38,17 +28,11 @@ const IMPLICIT_COST: f64 = 14.0;
 /// Cost of an implicit step's linear equations, in evaluations of rates per square of the number of components: an
 /// estimate from the operations of both.
 const EQUATIONS_COST: f64 = 0.02;
-/// Loss, in implicit steps that save nothing, after which these are given up as in vain; also the largest saving that
-/// is counted.
-const PATIENCE: f64 = 10.0;
 /// A step has its full length, which its error allows, if the next one may be longer by no more than this factor.
 const FULL_GROWN: f64 = 1.2;
 
 /// Displacement of a probe for the steepness of forces, as a multiple of the rounding of positions.
 const PROBE: f64 = 1e6;
-/// Least fraction of the last probe's rate that a probe may find: less is taken for a direction in which forces vary
-/// little.
-const FADING: f64 = 0.9;
 
 /// Cost of an implicit step for a number of state components, in explicit steps.
 fn cost(numbers: usize) -> f64 {
@@ -65,9 +49,9 @@ impl Dynamics<'_> {
         }
         let Stiffness { wait, looked, rate, .. } = self.group.stiffness;
         let rate = rate.max(self.damping_rate());
-        let is_far = |limit: f64| rate * self.group.span < FAR * limit;
+        let is_far = |limit: f64| rate * self.group.span < WORTHWHILE * limit;
         let is_far = tools.stepper.method().stability_limit().is_none_or(is_far);
-        if wait > 0 && is_far && self.group.span >= SHRUNK * looked {
+        if wait > 0 && is_far && self.group.span >= WORTHWHILE * looked {
             self.group.stiffness.wait -= 1;
             return None;
         }
@@ -116,18 +100,18 @@ impl Dynamics<'_> {
         let steep = rate.max(self.group.stiffness.steep);
         let is_rough =
             steep * steep * self.group.span * self.rounding() >= self.velocity_scale(&tools.settings.steps);
-        let held_up = if is_rough { ROUGH_HELD_UP } else { HELD_UP };
+        let held_up = if is_rough { SMALL } else { NEARLY_ALL };
         let stiffness = &mut self.group.stiffness;
         stiffness.rate = rate;
         match (tools.stepper.method().stability_limit(), tools.settings.method.stability_limit()) {
             (Some(limit), _) if told >= held_up * limit => stiffness.held_up += 1,
             (Some(limit), _) => {
                 stiffness.held_up = stiffness.held_up.saturating_sub(1);
-                stiffness.wait = if told < FAR * limit { UNTOLD_STEPS } else { 0 };
+                stiffness.wait = if told < WORTHWHILE * limit { UNTOLD_STEPS } else { 0 };
             }
             (None, limit) => {
                 let saved = stiffness.saved + told / limit.unwrap_or(told) - cost(numbers);
-                stiffness.saved = saved.min(PATIENCE * cost(numbers));
+                stiffness.saved = saved.min(LARGE * cost(numbers));
             }
         }
     }
@@ -177,7 +161,7 @@ impl Dynamics<'_> {
             };
             let changed = change(0).max(change(1)).max(change(2) * reach);
             // It is the square of a rate, so it fades by the square of the factor.
-            *rough = (changed / moved).max(FADING * FADING * *rough);
+            *rough = (changed / moved).max(NEARLY_ALL * NEARLY_ALL * *rough);
             most = most.max(changed);
         }
         if self.group.rows.iter().any(|row| !row.bilateral) {
@@ -187,7 +171,7 @@ impl Dynamics<'_> {
         (self.stage.trial, self.stage.trial_rates) = (trial, rates);
         let found = (most / moved).sqrt();
         let known = &mut self.group.stiffness.steep;
-        *known = found.max(FADING * *known);
+        *known = found.max(NEARLY_ALL * *known);
     }
 }
 
@@ -210,7 +194,7 @@ impl Group {
         let cost = cost(numbers);
         let known = &mut self.stiffness;
         if !known.is_stiff {
-            let needed = if known.is_known { 1 } else { TELLING_STEPS << known.in_vain.min(MOST_DOUBLINGS) };
+            let needed = if known.is_known { 1 } else { TELLING_STEPS << known.in_vain.min(ROUNDS) };
             if known.held_up >= needed && numbers <= MOST_NUMBERS {
                 *known = Stiffness { is_stiff: true, is_known: true, held_up: 0, saved: 0.0, ..*known };
                 self.accepted = None;
@@ -218,7 +202,7 @@ impl Group {
             return;
         }
         let Some(next) = self.next_step else { return };
-        let is_lost = known.saved < -PATIENCE * cost;
+        let is_lost = known.saved < -LARGE * cost;
         if next > FULL_GROWN * self.span {
             return;
         }

@@ -5,13 +5,10 @@ use crate::rigid::contacts::rows::{HeldRow, RowSource, moving_of};
 use crate::rigid::group::attempt::STEADY_GROWTH;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::body_state;
+use crate::rigid::shares::WAY_OF_A_STEP;
 use glam::DVec2;
 use halfgap_collision::{GapKinematics, Moving, first_closing_time};
 use halfgap_geometry::GapKind;
-
-/// Fraction of its reach by which a body may move in one step relative to its contacts; also the angle [rad] by which a
-/// contact may turn.
-const WATCHED_SHARE: f64 = 0.5;
 
 impl Dynamics<'_> {
     /// The longest step [s] along which contacts are surely sampled well. Where forces have not varied along the last
@@ -43,7 +40,7 @@ impl Dynamics<'_> {
                 let at = 3 * (count + place);
                 trajectory.fastest_point([values[at], values[at + 1], values[at + 2]])
             };
-            wait(WATCHED_SHARE * trajectory.reach(), of_points(&group.state), of_points(&group.rates))
+            wait(WAY_OF_A_STEP * trajectory.reach(), of_points(&group.state), of_points(&group.rates))
         });
         waits.fold(f64::INFINITY, f64::min)
     }
@@ -85,7 +82,7 @@ impl Dynamics<'_> {
         }
         let along_side = match sample.kind {
             // The contact runs along a side of a body; if that body cannot move, it does not matter.
-            GapKind::CenterLine if places[1].is_none() => return wait(WATCHED_SHARE, turn, turn_rate),
+            GapKind::CenterLine if places[1].is_none() => return wait(WAY_OF_A_STEP, turn, turn_rate),
             GapKind::CenterLine => sample.normal.perp().dot(kinematics.center_velocity).abs() / reach,
             GapKind::CenterCenter => 0.0,
         };
@@ -93,7 +90,7 @@ impl Dynamics<'_> {
             GapKind::CenterLine => reach,
             GapKind::CenterCenter => (sample.center_primary - sample.center_normal).length(),
         };
-        wait(WATCHED_SHARE, turn + along_side, turn_rate + pull.length() / arm)
+        wait(WAY_OF_A_STEP, turn + along_side, turn_rate + pull.length() / arm)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::rigid::held::settling::Settling;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::{HALF_ZONE, NEGLIGIBLE};
 use crate::time::Time;
 use halfgap_collision::{Collision, Tolerances};
 
@@ -39,7 +40,7 @@ pub(crate) fn drop_idle(
         let record = region.records()[index];
         let loads = places_of(region, &record).map(|place| gross[place]);
         let is_released = Touch::of(&record).is_some_and(|touch| region.cause() == Cause::Released(touch));
-        let share = if is_released { RELEASED_SHARE } else { IDLE_SHARE };
+        let share = if is_released { NEGLIGIBLE } else { IDLE_SHARE };
         let least = share * loads.fold(f64::INFINITY, f64::min);
         let lies_deep = !region.is_unsound() && lifted(assembly, pairs, &record).is_some();
         let stays = record.parties.bilateral || force > least || lies_deep;
@@ -121,19 +122,12 @@ fn is_seen(assembly: &Assembly, record: &Collision) -> bool {
 /// ends by more than `accuracy`, however they sink.
 fn lower_end(record: &Collision) -> f64 {
     let Tolerances { target_gap, accuracy, .. } = record.tolerances;
-    if record.connector().is_some() { -ROPE_SHARE * accuracy } else { target_gap - accuracy }
+    if record.connector().is_some() { -HALF_ZONE * accuracy } else { target_gap - accuracy }
 }
 
 /// Depth below its zone from which a row is lifted, as a multiple of the distance by which a contact sinks at a time: a
 /// row that has just been lifted may sink once.
 const SUNK: f64 = 1.5;
-
-/// Distance beyond its end at which a rope or a stop is held when it is lifted, as a fraction of its `accuracy`.
-const ROPE_SHARE: f64 = 0.5;
-
-/// Least force of a contact to be held again just after its release, as a fraction of the loads of its bodies. With
-/// less it sinks so slowly that it may as well be touched again.
-const RELEASED_SHARE: f64 = 1e-3;
 
 /// Force of a contact that is rounding, as a fraction of the loads of its bodies; such a contact need not be held. A
 /// little more may keep a body in balance: a brick on the joint of two others, which stands on corners next to each

@@ -10,18 +10,8 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::rows::row_of;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::{HALF_ZONE, LARGE, TINY};
 use halfgap_collision::{BodyId, Collision};
-
-/// Height of a low hop, as a fraction of the half-width of the target zone (`accuracy`), however far its bodies move.
-const HOP_SHARE: f64 = 1e-4;
-/// Height of a low hop in which the bodies hardly turn or slide, as a fraction of the same half-width.
-const SHORT_HOP_SHARE: f64 = 0.5;
-/// Angle [rad] by which the bodies may turn in such a hop, and fraction of their reach by which they may slide. They
-/// may do so by `SHORT_HOP_SHARE` of `accuracy` if that is more: their places need not be known better.
-const HOP_TURN: f64 = 1e-4;
-
-/// Multiple of the longest hop's time in which all have landed: one that comes down may make others hop.
-const HOPS_IN_TURN: f64 = 10.0;
 
 /// True if a contact of a region opens, perhaps in a low hop only. A contact that is alone in its region must open
 /// no faster than `velocity_tol`: a faster one bounces visibly, and is stopped when it lands.
@@ -38,10 +28,10 @@ pub(crate) fn is_low_hop(assembly: &Assembly, record: &Collision, acceleration: 
     let is_within = |share: f64| rate * rate <= -2.0 * acceleration * share * accuracy;
     let is_short = || {
         let bodies = record.bodies();
-        let turn = HOP_TURN.max(SHORT_HOP_SHARE * accuracy / assembly.largest_reach(bodies));
+        let turn = TINY.max(HALF_ZONE * accuracy / assembly.largest_reach(bodies));
         2.0 * rate * turning(assembly, record) <= -acceleration * turn
     };
-    acceleration < 0.0 && (is_within(HOP_SHARE) || (is_within(SHORT_HOP_SHARE) && is_short()))
+    acceleration < 0.0 && (is_within(TINY) || (is_within(HALF_ZONE) && is_short()))
 }
 
 /// Sum [1/s] of the rates at which the normal and the bodies of a contact turn, and slide relative to their reach.
@@ -85,7 +75,7 @@ pub(crate) fn time_of_hops(assembly: &Assembly, region: &Region, settling: &Sett
         let closing = force_of(record) * row.coupling(&row);
         is_low_hop(assembly, record, -closing).then(|| 2.0 * rate / closing)
     });
-    times.max_by(f64::total_cmp).map(|time| HOPS_IN_TURN * time)
+    times.max_by(f64::total_cmp).map(|time| LARGE * time)
 }
 
 /// Force [N] at which a contact is held.
@@ -103,20 +93,20 @@ mod tests {
 
     #[test]
     fn bodies_may_move_in_a_hop_by_as_much_as_is_asked_of_where_they_are() {
-        const GRAVITY: f64 = 9.81;
+        let gravity: f64 = 9.81;
         let mut rooms = resting_discs(&[0.0]);
         let mut work = rooms.work.take().expect("the start has made it");
         dissolve(&mut rooms, BodyId(1));
         collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
         let [record] = work.region.records_mut() else { panic!("one disc, one contact") };
         // The disc lands after 1 ms.
-        record.motion.normal_velocity = 5e-4 * GRAVITY;
+        record.motion.normal_velocity = 5e-4 * gravity;
         for (accuracy, slide, is_low) in
             [(1e-4, 1e-5, true), (1e-4, 1e-4, false), (1e-3, 1e-4, true), (1e-3, 1e-3, false)]
         {
             record.motion.lateral_velocity = slide / 1e-3;
             record.tolerances.accuracy = accuracy;
-            assert_eq!(is_low_hop(&rooms.assembly, record, -GRAVITY), is_low, "{slide} m of {accuracy} m");
+            assert_eq!(is_low_hop(&rooms.assembly, record, -gravity), is_low, "{slide} m of {accuracy} m");
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::impact::jams::JAM;
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::MAJOR;
 
 /// True if contact forces are so much larger than the loads of the bodies that rows seem to work against each
 /// other, as those on both sides of a body that just fits. Connectors do not count: those with long arms have such
@@ -19,5 +19,5 @@ pub(crate) fn is_jammed(assembly: &Assembly, region: &Region, settling: &Settlin
 pub(crate) fn is_jam(assembly: &Assembly, region: &Region, stage: &Stage, largest: f64) -> bool {
     let loads =
         region.bodies().iter().zip(stage.accelerations()).map(|(&body, a)| assembly.trajectory(body).load(a));
-    largest > JAM * loads.sum::<f64>()
+    largest > MAJOR * loads.sum::<f64>()
 }

@@ -8,13 +8,10 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{RowSource, mechanism, source_of};
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::HUGE;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Pose, Rotation};
-
-/// Multiple of the resolution time within which a leaving contact slides by `accuracy`; one that slides more slowly
-/// stays.
-const SOON: f64 = 1e3;
 
 /// Leaves out the records of a region that run off their features while they slide by `accuracy`.
 pub(crate) fn retain_staying(assembly: &Assembly, connectors: &Connectors, region: &mut Region) {
@@ -32,7 +29,7 @@ fn leaves_at_once(
     let Some(RowSource::Contact(features)) = source_of(record) else { return false };
     let bodies = record.bodies();
     let wait = assembly.settings().tolerances.accuracy / record.motion.lateral_velocity.abs();
-    if wait.is_nan() || wait > SOON * assembly.settings().resolution_time {
+    if wait.is_nan() || wait > HUGE * assembly.settings().resolution_time {
         return false;
     }
     let moved = bodies.map(|body| after(&moving(body), wait));

@@ -6,11 +6,9 @@
 //! Parlett, "The Symmetric Eigenvalue Problem", 1980, 6.9).
 
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::ROUNDED;
 use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::InverseInertia;
-
-/// A bilateral row depends on others if they leave less than this fraction of its square.
-const DEPENDENT: f64 = 1e-12;
 
 /// Orthonormal basis of the rows of a region's connectors, in the metric of the masses.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +23,7 @@ impl Levers {
     pub(crate) fn load(&mut self, region: &Region, inertia: impl Fn(BodyId) -> InverseInertia) {
         self.basis.clear();
         for record in region.records().iter().filter(|record| record.parties.bilateral) {
-            if self.left_of(region, record, &inertia) > DEPENDENT {
+            if self.left_of(region, record, &inertia) > ROUNDED {
                 let square: f64 = self.row.iter().map(|entry| entry * entry).sum();
                 self.basis.extend(self.row.iter().map(|entry| entry / square.sqrt()));
             }

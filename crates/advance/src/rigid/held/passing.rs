@@ -6,9 +6,7 @@ use crate::rigid::contacts::touch::Touch;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use crate::rigid::search::dead_point::{dead_point_gap, is_tied};
-
-/// A lever is next to none below this fraction of what it would be without the connectors.
-const LEVER: f64 = 1e-3;
+use crate::rigid::shares::NEGLIGIBLE;
 
 /// Leaves out the contacts that act by next to no lever on a body held by connectors: near a dead point they would
 /// need forces far larger than all loads, while the body does not lie on its other supports yet. True if any have
@@ -27,7 +25,7 @@ pub(crate) fn let_pass(
         let passes = !record.parties.bilateral
             && record.geometry.distance > dead_point_gap(assembly, bodies)
             && bodies.iter().any(|&body| is_tied(connectors, body))
-            && levers.left_of(region, record, |body| assembly.inertia(body)) < LEVER * LEVER;
+            && levers.left_of(region, record, |body| assembly.inertia(body)) < NEGLIGIBLE * NEGLIGIBLE;
         let touch = Touch::of(record).filter(|_| passes);
         passing.extend(touch);
         touch.is_none()

@@ -2,6 +2,7 @@
 //! by elimination, which gives one of the dependent rows no force; if that is the wrong one, other contacts pull.
 
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::ROUNDED_FORCE;
 use halfgap_contact::{HeldRows, InverseInertia, Settings};
 
 /// The candidates as equations, with buffers.
@@ -27,9 +28,6 @@ pub(crate) struct Rows {
     /// Rows to be spared.
     pub(super) spared: Vec<usize>,
 }
-
-/// Fraction of the largest contact force by which a contact may pull by rounding.
-const ROUNDING: f64 = 1e-9;
 
 impl Default for Redundant {
     fn default() -> Self {
@@ -62,7 +60,7 @@ impl Rows {
         as_held.clear();
         as_held.resize(self.forces.len(), 0.0);
         held.solve(offset, as_held);
-        let least = -ROUNDING * self.largest_force();
+        let least = -ROUNDED_FORCE * self.largest_force();
         as_held.iter().zip(&self.bilateral).any(|(&force, &bilateral)| !bilateral && force < least)
     }
 

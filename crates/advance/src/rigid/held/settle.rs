@@ -11,7 +11,6 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::group::groups::Groups;
-use crate::rigid::group::level::LEVEL;
 use crate::rigid::group::physics::physics;
 use crate::rigid::group::segment::LONGEST_STEP;
 use crate::rigid::group::stage::Stage;
@@ -21,18 +20,16 @@ use crate::rigid::held::jammed::is_jammed;
 use crate::rigid::held::passing::let_pass;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::held::sparing::{spare_nearly_redundant, spare_redundant};
-use crate::rigid::impact::jams::{SMALL_CONTRADICTION, is_close};
+use crate::rigid::impact::jams::is_close;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::{NEGLIGIBLE, ROUNDED};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyAcceleration, BodyId, Collision};
 use halfgap_contact::SolveError;
-
-/// Largest opening rate of a held contact in a hasty group, as a fraction of the rate at rest.
-pub(crate) const HASTY_SHARE: f64 = 1e-3;
 
 /// Outcome of the solve for the forces of the candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +63,7 @@ pub(crate) fn settle(
         (false, true) => view.assembly.storm_rest(),
         (false, false) => view.assembly.rest_speed(),
     };
-    let share = if region.is_hasty() { HASTY_SHARE } else { 1.0 };
+    let share = if region.is_hasty() { NEGLIGIBLE } else { 1.0 };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
         let is_slow = (-rest..=share * rest).contains(&record.motion.normal_velocity);
@@ -248,7 +245,7 @@ fn take_back_pressed(assembly: &Assembly, region: &Region, settling: &mut Settli
     let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
     let pushed = std::mem::take(&mut settling.pushed);
     let is_pressed =
-        |index: usize| offset_under(region, &region.records()[index], &pushed) < -SMALL_CONTRADICTION * scale;
+        |index: usize| offset_under(region, &region.records()[index], &pushed) < -NEGLIGIBLE * scale;
     let any = settling.take_back(is_pressed);
     settling.pushed = pushed;
     any
@@ -280,7 +277,7 @@ fn pose_problem(assembly: &Assembly, region: &Region, settling: &mut Settling, s
         // Accelerations that move nothing in the longest time are rounding, as are those that remain of
         // accelerations across the normal.
         let offset = free_offset(region, record, stage);
-        let least = least.max(LEVEL * largest_acceleration(region, record, stage));
+        let least = least.max(ROUNDED * largest_acceleration(region, record, stage));
         let offset = if offset.abs() > least { offset } else { 0.0 };
         let Some(row) = region.row_of(record, offset) else { continue };
         problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
@@ -356,12 +353,12 @@ mod tests {
     /// True if the contact of a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is
     /// pushed up with an acceleration [m/s^2].
     fn beam_holds_disc_below(push: f64) -> bool {
-        const GAP: f64 = FINE.tolerances.target_gap;
+        let gap: f64 = FINE.tolerances.target_gap;
         let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
         let post = |x: f64| {
             let tall = shape(Shape::block(0.2, 1.0));
             let body = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
-            let state = BodyState { position: DVec2::new(x, -0.5 - GAP), ..BodyState::default() };
+            let state = BodyState { position: DVec2::new(x, -0.5 - gap), ..BodyState::default() };
             BodyPart { body, free_motion: FreeMotion::default(), state }
         };
         let mover = |shape: Shape, y: f64, acceleration: f64| {
@@ -371,7 +368,7 @@ mod tests {
             BodyPart { body, free_motion: law, state }
         };
         let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
-        let disc = mover(shape(Shape::disc(0.1)), -0.1 - GAP, push);
+        let disc = mover(shape(Shape::disc(0.1)), -0.1 - gap, push);
         let bodies = vec![post(-1.0), post(1.0), beam, disc];
         let parts = RigidParts { bodies, ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::ZERO);

@@ -6,8 +6,8 @@ use crate::rigid::contacts::rows::HeldRow;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::held::levers::Levers;
 use crate::rigid::held::redundant::Redundant;
-use crate::rigid::impact::jams::SMALL_CONTRADICTION;
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::NEGLIGIBLE;
 use halfgap_collision::BodyId;
 use halfgap_contact::{
     Auto, InverseInertia, Method, Problem, Settings, Solution, SolveError, Solver, WarmStart,
@@ -71,8 +71,7 @@ impl Default for Settling {
         };
         let solver = |settings| Auto::new(settings).expect("the settings are valid");
         let sharing = Settings { selection: halfgap_contact::ForceSelection::Quickest, ..settings };
-        let lenient =
-            Settings { inconsistency: SMALL_CONTRADICTION, natural_residual: LENIENT_RESIDUAL, ..settings };
+        let lenient = Settings { inconsistency: NEGLIGIBLE, natural_residual: LENIENT_RESIDUAL, ..settings };
         Self {
             problem: Problem::new(),
             solution: Solution::new(),

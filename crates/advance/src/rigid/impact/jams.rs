@@ -10,12 +10,9 @@ use crate::rigid::impact::impacts::{Manner, find_impulses};
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::{MAJOR, NEGLIGIBLE};
 use halfgap_collision::Collision;
 use halfgap_contact::{Impact, ImpactError};
-
-/// Impulses jam if they exceed the largest change of momentum of any body by this factor; so do forces that exceed all
-/// loads together by it.
-pub(crate) const JAM: f64 = 100.0;
 
 /// Leaves out of a region the contacts farther apart than the gap at which bodies fire, if the impulses of contacts
 /// jam; true if there are any.
@@ -61,7 +58,7 @@ pub(crate) fn jams(assembly: &Assembly, region: &mut Region, impact: &Impact) ->
     let contacts = region.records().iter().zip(impact.impulses());
     let contacts = contacts.filter(|(record, _)| !record.parties.bilateral);
     let largest = contacts.fold(0.0f64, |most, (_, impulse)| most.max(impulse.abs()));
-    largest > 0.0 && largest > JAM * momentum_changed(assembly, region, impact)
+    largest > 0.0 && largest > MAJOR * momentum_changed(assembly, region, impact)
 }
 
 /// Largest change of momentum [N s] of any body of a region by an impact: its mass times the change of velocity,
@@ -77,13 +74,9 @@ fn admit_pressed(region: &mut Region, impact: &Impact) -> bool {
     region.sum_changes(impact);
     let records = region.records().iter().chain(region.left_out());
     let rates = records.map(|record| -record.motion.normal_velocity);
-    let least = SMALL_CONTRADICTION * rates.fold(0.0, f64::max);
+    let least = NEGLIGIBLE * rates.fold(0.0, f64::max);
     region.admit(|record, change| change.max(record.motion.normal_velocity + change) < -least)
 }
-
-/// Contradiction of rows, relative to the largest acceleration, up to which contacts are solved by least squares: that
-/// of rows that move no faster than at rest. The contradiction of contacts that crush a body is of the order of 1.
-pub(crate) const SMALL_CONTRADICTION: f64 = 1e-3;
 
 #[cfg(test)]
 mod tests {

@@ -12,11 +12,9 @@ use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
 use halfgap_geometry::Aabb;
 
-/// Number of neighbours above which a box shrinks. Fewer neighbours cost more moves of boxes in a gas, more cost more
+/// Number of neighbours above which a box shrinks; it grows below half of that. Fewer neighbours cost more moves of boxes in a gas, more cost more
 /// predictions: from 8 to 14 there is little between them.
 const MANY: usize = 10;
-/// Number of neighbours below which a box grows.
-const FEW: usize = 5;
 /// Factor by which a margin grows or shrinks at a time.
 const FACTOR: f64 = 1.5;
 /// Distance by which a box is set ahead of a body in flight, as a fraction of its margin: a gas has a seventh fewer
@@ -69,7 +67,7 @@ impl Room {
     pub(crate) fn adapt(&mut self, neighbours: usize) {
         if neighbours > MANY {
             self.margin = (self.margin / FACTOR).max(self.reach * SMALLEST_MARGIN);
-        } else if neighbours < FEW {
+        } else if 2 * neighbours < MANY {
             self.margin = (self.margin * FACTOR).min(self.reach * LARGEST_MARGIN);
         }
     }

@@ -13,13 +13,12 @@ use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::touch::{DEEPEST, Touch};
 use crate::rigid::remedies::Remedy;
 use crate::rigid::search::searching::Searching;
+use crate::rigid::shares::NEARLY_ALL;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule};
 use halfgap_geometry::{Feature, FeatureId};
 
-/// Depth, in target gaps, that grazing features do not come to: a little less than that from which contacts are lifted.
-const DEPTH: f64 = 0.9 * DEEPEST;
 /// Apparent loss of a gap as a multiple of the connectors' error in the middle of a step.
 const SEEMING: f64 = 2.0;
 
@@ -58,7 +57,11 @@ pub(crate) fn is_near_dead_point(assembly: &Assembly, connectors: &Connectors, r
 /// Gap [m] above which grazing features stay: not negative where the target zone is large enough to be seen, for
 /// bodies do not visibly overlap.
 pub(crate) fn dead_point_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
-    if assembly.is_zone_seen(bodies) { 0.0 } else { -DEPTH * assembly.settings().tolerances.target_gap }
+    if assembly.is_zone_seen(bodies) {
+        0.0
+    } else {
+        -NEARLY_ALL * DEEPEST * assembly.settings().tolerances.target_gap
+    }
 }
 
 /// True if features, one of them on a body held by connectors, part again in their present motion before they come
@@ -116,7 +119,7 @@ pub(crate) fn rope_is_near_dead_point(assembly: &Assembly, connectors: &Connecto
 
 /// Excess length [m] that a grazing rope is given.
 pub(crate) fn dead_point_slack(assembly: &Assembly) -> f64 {
-    DEPTH * assembly.settings().tolerances.target_gap
+    NEARLY_ALL * DEEPEST * assembly.settings().tolerances.target_gap
 }
 
 /// True if a closing gap between bodies, one of them held by connectors, opens again in the present motion before

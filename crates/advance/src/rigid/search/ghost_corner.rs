@@ -11,6 +11,7 @@ use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::search::searching::Searching;
+use crate::rigid::shares::{NEGLIGIBLE, SEVERAL};
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
 use halfgap_geometry::{Edge, Feature, FeatureId};
@@ -21,10 +22,6 @@ const PARALLEL: f64 = 1e-6;
 /// Least length of edges that may be askew, as a multiple of half the zone's width: shorter ones are within it at any
 /// angle.
 const LONG: f64 = 24.0;
-/// Largest distance of corners that meet, in target gaps.
-const NEAR: f64 = 4.0;
-/// Largest rise or fall of a passing corner as a fraction of its way; more along edges at a larger angle.
-const LEVEL: f64 = 1e-3;
 
 /// Pairs of features that pass each other, that of the lesser body first.
 type Passing = [Option<[FeatureId; 2]>; 4];
@@ -137,7 +134,7 @@ fn flush_sides(assembly: &Assembly, [first, second]: [&Corner; 2]) -> Option<[us
     let (gap, accuracy) =
         (assembly.settings().tolerances.target_gap, assembly.settings().tolerances.accuracy);
     let (offset, velocity) = (first.place - second.place, first.velocity - second.velocity);
-    if offset.length_squared() > (NEAR * gap).powi(2) {
+    if offset.length_squared() > (SEVERAL * gap).powi(2) {
         return None;
     }
     let sides = [[0, 0], [1, 1], [0, 1], [1, 0]];
@@ -161,6 +158,6 @@ fn flush_sides(assembly: &Assembly, [first, second]: [&Corner; 2]) -> Option<[us
         let inward = if of_second == 0 { -along_second } else { along_second };
         let way = inward.dot(velocity);
         let way = if of_first == of_second { way } else { way.abs() };
-        is_parallel && rise.abs() <= LEVEL.max(tilt) * way && (lowest..=gap).contains(&height)
+        is_parallel && rise.abs() <= NEGLIGIBLE.max(tilt) * way && (lowest..=gap).contains(&height)
     })
 }

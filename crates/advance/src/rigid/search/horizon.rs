@@ -2,14 +2,13 @@
 //! motions. Later contacts are searched for if it has not come.
 
 use crate::rigid::search::searching::Searching;
+use crate::rigid::shares::WORTHWHILE;
 use crate::time::Time;
 use halfgap_collision::BodyId;
 
 /// Time by which a search goes beyond the first contact, as a fraction of the time until it: where the contact's time
 /// is corrected, contacts that come close after it are known.
 const BEYOND: f64 = 1.0 / 8.0;
-/// Fraction of the known motion below which a search is worth ending early: bounds on all of a step are at hand.
-const WORTHWHILE: f64 = 0.5;
 
 impl Searching<'_> {
     /// Time, at most `until`, up to which two bodies are searched from a time on.

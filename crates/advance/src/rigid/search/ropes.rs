@@ -6,6 +6,7 @@ use crate::rigid::connectors::store::{rope_of, slack_of};
 use crate::rigid::search::dead_point::{dead_point_slack, rope_is_near_dead_point};
 use crate::rigid::search::predictions::LONGEST_SPAN;
 use crate::rigid::search::searching::Searching;
+use crate::rigid::shares::ROUNDS;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, Flight, Motion, MotionBounds, Rope, RopeSearch, rope_contact};
 
@@ -114,7 +115,7 @@ impl Searching<'_> {
             return None;
         }
         let (RopeSearch::Taut(wait) | RopeSearch::NoneBefore(wait)) = found;
-        let mut times = (0..LOOKS).map(|look| from.plus(wait * f64::from(look) / f64::from(LOOKS)));
+        let mut times = (0..ROUNDS).map(|look| from.plus(wait * f64::from(look) / f64::from(ROUNDS)));
         times.find(|&time| {
             let [a, b] =
                 self.connectors.connector(id).bodies().map(|body| self.assembly.moving_at(body, time));
@@ -142,9 +143,6 @@ impl Searching<'_> {
         false
     }
 }
-
-/// Number of times at which a rope is tested for having gone slack before it is taut again.
-const LOOKS: u32 = 8;
 
 /// Rough time [s] in which the ends of a rope, as they move now, go as far as the rope is long.
 fn crossing_time(rope: &Rope, a: &MotionBounds, b: &MotionBounds) -> f64 {

@@ -2,6 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::touch::Touch;
+use crate::rigid::shares::{MINOR, NEARLY_ALL};
 use halfgap_collision::{BodyId, Tolerances};
 
 /// Contacts that wait for the next tick.
@@ -81,15 +82,8 @@ impl Sinking {
     }
 }
 
-/// Depth to which a pair may sink, as a fraction of the reach of the smaller body, beside the way that it slowly closes
-/// by in a step.
-const SUNK_SHARE: f64 = 1e-2;
-
 /// Fraction of the room to sink at which a pair fires again.
 pub(crate) const FIRST_SHARE: f64 = 0.6;
-
-/// Fraction of the room beyond which a pair sinks no further, unless others drive it.
-pub(crate) const DEEPEST_SHARE: f64 = 0.9;
 
 /// Fraction of the room by which a pair may sink further whenever it fires again, slowly.
 pub(crate) const FURTHER_SHARE: f64 = 1.0 / 96.0;
@@ -111,7 +105,7 @@ pub(crate) fn room_to_sink(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
     let Some(step) = assembly.settings().impulse_step else { return 0.0 };
     let reach = bodies.map(|body| assembly.trajectory(body).reach());
     let Tolerances { accuracy, velocity_tol, .. } = assembly.settings().tolerances;
-    let of_bodies = (SUNK_SHARE * reach[0].min(reach[1])).min(assembly.thinness(bodies));
+    let of_bodies = (MINOR * reach[0].min(reach[1])).min(assembly.thinness(bodies));
     // Contacts may be anywhere in the target zone, and sink from there: a first firing lies no higher than its end.
     of_bodies.max(accuracy / FIRST_SHARE) + velocity_tol * step
 }
@@ -124,7 +118,7 @@ pub(crate) fn sinks_to(assembly: &Assembly, touch: Touch, gap: f64) -> f64 {
     if assembly.settings().impulse_step.is_none() || gap >= target_gap - accuracy {
         return assembly.refire_gap(gap);
     }
-    let left = gap - target_gap + DEEPEST_SHARE * room_to_sink(assembly, touch.bodies);
+    let left = gap - target_gap + NEARLY_ALL * room_to_sink(assembly, touch.bodies);
     gap - assembly.sink().max(FURTHER_SHARE * left)
 }
 

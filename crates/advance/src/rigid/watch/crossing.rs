@@ -7,23 +7,17 @@
 //! function without using derivatives", Advances in Engineering Software 28,
 //! 1997).
 
-use crate::rigid::group::samples::{EARLY, NODES};
+use crate::rigid::group::samples::{EARLY, NODES, middle_node};
+use crate::rigid::shares::{HALVINGS, NEGLIGIBLE};
 
 /// Number of parts of the way between two nodes, in each of which the quartic has one minimum at most.
 const PARTS: usize = 4;
-/// Largest number of steps to a minimum of the quartic.
-const MOST_DESCENTS: usize = 60;
-/// Height, as a fraction of the largest sample, up to which a minimum of the quartic may be a dip below zero.
-const NEARLY_ZERO: f64 = 1e-3;
 /// Widths, in nodes, of the parabolas that lead from the quartic's minimum to the function's own.
 const WIDTHS: [f64; 2] = [0.1, 0.01];
 /// Largest number of steps that close a bracket.
 const MOST_STEPS: usize = 200;
 /// Width of a closed bracket as a fraction of the segment.
 const CLOSED: f64 = 1e-14;
-
-/// Index of the middle node.
-const MIDDLE_NODE: f64 = (NODES - 1) as f64 / 2.0;
 
 /// Offset of an early sample as a fraction of that of the next.
 const EARLIER: f64 = 0.25;
@@ -90,7 +84,7 @@ impl Part {
 
 /// Value at a fraction of a part of a segment of the quartic through the values at its nodes.
 pub(crate) fn interpolated(values: &[f64; NODES], fraction: f64) -> f64 {
-    Quartic::through(values).value(fraction * (NODES - 1) as f64 - MIDDLE_NODE)
+    Quartic::through(values).value(fraction * (NODES - 1) as f64 - middle_node())
 }
 
 /// Offset [s] of a node of a segment of the given span.
@@ -221,9 +215,9 @@ impl Quartic {
 
     /// Place, in nodes, of the lowest minimum between two nodes, if it is below zero or nearly so.
     fn dip_between(&self, index: usize) -> Option<f64> {
-        let first = index as f64 - MIDDLE_NODE;
+        let first = index as f64 - middle_node();
         let edge = |part: usize| first + part as f64 / PARTS as f64;
-        let enough = NEARLY_ZERO * self.size;
+        let enough = NEGLIGIBLE * self.size;
         let mut lowest: Option<Sample> = None;
         let mut before = self.slope(edge(0));
         for part in 0..PARTS {
@@ -240,13 +234,13 @@ impl Quartic {
             before = after;
         }
         let (place, value) = lowest?;
-        (value < enough).then_some(place + MIDDLE_NODE)
+        (value < enough).then_some(place + middle_node())
     }
 
     /// Place, in nodes from the middle, at which the slope, negative at `low` and not so at `high`, vanishes.
     fn minimum_between(&self, mut low: f64, mut high: f64) -> f64 {
         let mut place = 0.5 * (low + high);
-        for _ in 0..MOST_DESCENTS {
+        for _ in 0..HALVINGS {
             let slope = self.slope(place);
             if slope < 0.0 {
                 low = place
@@ -408,25 +402,25 @@ mod tests {
 
     #[test]
     fn a_function_that_starts_below_zero_and_goes_on_falling_has_fallen() {
-        const BELOW: f64 = 1e-14;
+        let below: f64 = 1e-14;
         let fall = |allowed: f64, rate: f64| {
-            let f = |t: f64| -BELOW - rate * t;
+            let f = |t: f64| -below - rate * t;
             fall_from_below(&std::array::from_fn(|index| f(node(index, 2.0))), 2.0, allowed, f)
         };
-        for allowed in [1.9 * BELOW, 2.0 * BELOW, 200.0 * BELOW] {
+        for allowed in [1.9 * below, 2.0 * below, 200.0 * below] {
             let offset = fall(allowed, 1e-3).expect("it falls");
-            assert!((offset / (1e3 * (allowed - BELOW)) - 1.0).abs() < 1e-2, "{offset}");
+            assert!((offset / (1e3 * (allowed - below)) - 1.0).abs() < 1e-2, "{offset}");
         }
         // A function that stays where it is, or rises, has not fallen.
-        assert_eq!(fall(2.0 * BELOW, 0.0), None);
-        assert_eq!(fall(2.0 * BELOW, -1.0), None);
+        assert_eq!(fall(2.0 * below, 0.0), None);
+        assert_eq!(fall(2.0 * below, -1.0), None);
         // A function that is lower already has fallen.
-        assert_eq!(fall(0.5 * BELOW, -1.0), Some(0.0));
+        assert_eq!(fall(0.5 * below, -1.0), Some(0.0));
         // A function that is back by the first node had fallen.
-        let dips = |t: f64| -BELOW - t * (0.3 - t);
+        let dips = |t: f64| -below - t * (0.3 - t);
         let values = std::array::from_fn(|index| dips(node(index, 2.0)));
-        let offset = fall_from_below(&values, 2.0, 2.0 * BELOW, dips).expect("it dips");
-        assert!(dips(offset) < -2.0 * BELOW && offset < 1e-12, "{offset}");
+        let offset = fall_from_below(&values, 2.0, 2.0 * below, dips).expect("it dips");
+        assert!(dips(offset) < -2.0 * below && offset < 1e-12, "{offset}");
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::rigid::group::inner::MIDDLE;
 use crate::rigid::group::samples::{EARLY, NODES, Samples};
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::shares::NEGLIGIBLE;
 use crate::rigid::watch::crossing::{
     Part, early_fall, early_node, fall_after_rise, first_fall, first_fall_before, node,
 };
@@ -18,10 +19,6 @@ use crate::rigid::watch::overdue::find_overdue;
 use crate::rigid::watch::releases::{firm_part, look_for_release};
 use crate::rigid::watch::staying::{find_bounds, stays};
 use crate::rigid::watch::switches::{find_passing, find_stop, find_switch};
-
-/// Change of the gap of a contact without force, as a fraction of the distance by which it may sink, up to which it
-/// stays where it is.
-const STILL_SHARE: f64 = 1e-3;
 
 /// Largest number of searches for an end of a rail's piece that comes before the one that was found.
 const MOST_ZOOMS: usize = 16;
@@ -119,7 +116,7 @@ fn find_geometric_event(dynamics: &mut Dynamics<'_>) -> Option<(f64, SegmentEnd)
 
 /// True if contacts that are touched without force neither closed nor opened along the segment.
 fn are_still(dynamics: &Dynamics<'_>, heights: &[[f64; NODES]]) -> bool {
-    let still = STILL_SHARE * dynamics.physics.mechanism.tolerances.sink();
+    let still = NEGLIGIBLE * dynamics.physics.mechanism.tolerances.sink();
     heights.iter().all(|sample| sample.iter().all(|height| (height - sample[0]).abs() <= still))
 }
 
@@ -337,9 +334,9 @@ mod tests {
 
     #[test]
     fn a_contact_below_its_least_gap_by_rounding_is_seen_to_sink_farther() {
-        /// Rounding [m] of gaps.
-        const ROUNDING: f64 = 1e-17;
-        for below in [0.0, ROUNDING, 0.5e-9] {
+        // Rounding [m] of gaps.
+        let rounding: f64 = 1e-17;
+        for below in [0.0, rounding, 0.5e-9] {
             // A disc that falls, its contact with the floor touched without force.
             let mut rooms = resting_discs(&[0.0]);
             let sink = rooms.assembly.settings().tolerances.sink();

@@ -4,6 +4,7 @@ use crate::rigid::group::attempt::StepFailure;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::group::tools::Tools;
+use crate::rigid::shares::{ROUNDINGS, ROUNDS};
 use crate::rigid::watch::early_ends::find_event;
 use crate::rigid::watch::switches::find_switch_at_end;
 
@@ -39,8 +40,8 @@ fn end_before_switch(
     if dynamics.group.laws().is_empty() || !tools.stepper.method().is_adaptive() {
         return Ok(());
     }
-    let mut before = dynamics.clock_ticks(TICKS_BEFORE_SWITCH);
-    for _ in 0..MOST_APPROACHES {
+    let mut before = dynamics.clock_ticks(ROUNDINGS);
+    for _ in 0..ROUNDS {
         let Some((offset, SegmentEnd::Switch)) = dynamics.group.event() else { break };
         if offset <= 2.0 * before {
             break;
@@ -60,11 +61,5 @@ fn end_before_switch(
     Ok(())
 }
 
-/// Time before a change of a law's branch at which a step ends, in ticks of the clock.
-const TICKS_BEFORE_SWITCH: f64 = 64.0;
-
 /// Factor by which that time grows where the change then turns out to come earlier.
 const WIDER: f64 = 8.0;
-
-/// Largest number of steps that are tried before a change.
-const MOST_APPROACHES: usize = 8;

@@ -127,11 +127,11 @@ mod tests {
 
     #[test]
     fn a_contact_that_goes_on_beyond_its_features_by_many_short_steps_runs_off() {
-        const BEYOND: f64 = 1e-4;
+        let beyond: f64 = 1e-4;
         let mut rooms = block_on_its_corner();
-        rooms.assembly.settings_mut().steps.largest_step = Some(0.3 * BEYOND);
+        rooms.assembly.settings_mut().steps.largest_step = Some(0.3 * beyond);
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
-        let angle = group.state()[2] + 0.2 + BEYOND;
+        let angle = group.state()[2] + 0.2 + beyond;
         turn_on_its_corner(&mut group, angle, 1.0);
         group.end_at_start();
         put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
@@ -141,7 +141,7 @@ mod tests {
             let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is held");
             if let Some((offset, SegmentEnd::Change(0))) = group.event() {
                 turned += offset;
-                assert!(turned > 0.5 * BEYOND && turned < 3.0 * BEYOND, "{turned} rad");
+                assert!(turned > 0.5 * beyond && turned < 3.0 * beyond, "{turned} rad");
                 return;
             }
             turned += group.span();

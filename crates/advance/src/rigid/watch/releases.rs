@@ -9,18 +9,14 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::group::stepping::Stepping;
+use crate::rigid::shares::{HALVINGS, ROUNDED_FORCE, SEVERAL};
 use crate::rigid::watch::crossing::{Part, interpolated};
 use crate::rigid::watch::earliest::Earliest;
 use crate::rigid::watch::early_ends::{Watch, fill, find_first};
 use crate::rigid::watch::overdue::find_overdue;
 
-/// Force that counts as none, as a fraction of the loads of its bodies: more than the rounding of nearly redundant
-/// contacts.
-const FORCE_SHARE: f64 = 1e-9;
 /// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
 const PULL: f64 = 16.0;
-/// Rate at which a force may begin to fall, as a multiple of its variation along a step.
-const STEEP: f64 = 4.0;
 
 /// Fractions of a part of the segment at which forces are compared with the quartics through their samples: near the
 /// middles of the first and the last interval, where quartics err most, and in an inner one. They have no common divisor
@@ -33,9 +29,6 @@ const RESOLVED: f64 = 3e-4;
 const NARROWEST: f64 = 1e-8;
 /// Largest number of times that parts of one segment are halved, in all, where force laws press the contacts.
 const MOST_HALVINGS: usize = 10_000;
-/// The same number without force laws: forces are smooth then, but for poles, each of which takes as many halvings as lead
-/// to the narrowest part. More are needed only where forces are rounding.
-const HALVINGS_AT_POLES: usize = 64;
 
 /// Watch for contact forces that fall to zero.
 const RELEASES: Watch = Watch {
@@ -57,7 +50,7 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
     let mut pulled = dynamics.group.lend_pulled();
     let narrowest = NARROWEST * dynamics.group.span();
     let end = earliest.limit().unwrap_or(dynamics.group.span());
-    let most = if dynamics.group.laws().is_empty() { HALVINGS_AT_POLES } else { MOST_HALVINGS };
+    let most = if dynamics.group.laws().is_empty() { HALVINGS } else { MOST_HALVINGS };
     let (mut part, mut halvings) = (Part::all(end), 0);
     while earliest.is_after(part.from) {
         sample_forces(dynamics, &mut forces, part);
@@ -130,7 +123,7 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
         let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
         let is_firm = is_known && least > largest - least;
         let is_slow = is_known && laws.is_empty() && start > 0.0;
-        let part = if is_slow { start / (STEEP * (largest - least)) } else { 0.0 };
+        let part = if is_slow { start / (SEVERAL * (largest - least)) } else { 0.0 };
         (!is_firm).then_some(part)
     };
     contacts.filter_map(part).min_by(f64::total_cmp)
@@ -145,7 +138,7 @@ fn find_least_forces(dynamics: &mut Dynamics<'_>) {
         let at = 3 * (count + place);
         dynamics.physics.mechanism.trajectories[body.index()].load(&group.rates()[at..at + 3])
     });
-    dynamics.stage.set_least_forces(FORCE_SHARE, group, loads);
+    dynamics.stage.set_least_forces(ROUNDED_FORCE, group, loads);
 }
 
 /// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.

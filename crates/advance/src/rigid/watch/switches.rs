@@ -5,22 +5,20 @@ use crate::rigid::contacts::rows::moving_of;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
 use crate::rigid::group::state::SegmentEnd;
+use crate::rigid::shares::HALVINGS;
 use crate::rigid::watch::crossing::{between_nodes, first_fall, node};
 use crate::rigid::watch::earliest::Earliest;
 
 /// Factor by which the search for a stop that is touched is shortened, until its point is off it at the first node.
 const SHORTER: f64 = 0.25;
-/// Largest number of such shortenings.
-const MOST_SHORTER: usize = 30;
 /// Largest number of times that the wait after a change of sign is doubled until it shows: slow changes show late.
 const MOST_TICKS: usize = 16;
 /// Times after the end of a segment at which a change of sign is looked for, in ticks of the clock. The last is longer than
 /// the shortest step.
 const TICKS_AFTER_END: [f64; 4] = [128.0, 512.0, 2048.0, 8192.0];
-/// Part of a segment's length by which its dense output may be read beyond its end.
+/// Part of a segment's length by which its dense output may be read beyond its end; also after which the sign of a
+/// switching function is read on the first segment of a group.
 const LOOK_AHEAD: f64 = 1.0 / 1024.0;
-/// Fraction of the first segment of a group after which the sign of a switching function is read.
-const SIGN_AT: f64 = 1.0 / 1024.0;
 
 /// Offset [s] at which a stop that is not held closes. A stop from which its point has just set out is touched at
 /// the start: the search then covers so short a part of the segment that the point is off the stop. On a closed
@@ -28,7 +26,7 @@ const SIGN_AT: f64 = 1.0 / 1024.0;
 pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {
     let lap = lap_of(dynamics, stop);
     let mut reach = dynamics.group.span();
-    for _ in 0..MOST_SHORTER {
+    for _ in 0..HALVINGS {
         let mut values = sample_stop(dynamics, stop, reach, lap);
         let touches = values[0] <= 0.0;
         values[0] = values[0].max(0.0);
@@ -140,7 +138,7 @@ fn sign_before(dynamics: &mut Dynamics<'_>, law: usize, index: usize) -> f64 {
 fn sign_at(dynamics: &Dynamics<'_>) -> f64 {
     let group = &*dynamics.group;
     let (span, start, made) = (group.span(), group.start(), group.made());
-    if start == made { span * SIGN_AT } else { 0.0 }
+    if start == made { span * LOOK_AHEAD } else { 0.0 }
 }
 
 /// First offset [s] that the clock resolves after a switching function has changed its sign from the given one,
@@ -175,7 +173,7 @@ mod tests {
     use crate::rigid::group::groups::with_group;
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::test_scene::{FINE, rooms_of};
-    use crate::rigid::watch::switches::SIGN_AT;
+    use crate::rigid::watch::switches::LOOK_AHEAD;
     use crate::time::Time;
     use halfgap_collision::{Body, BodyId, BodyState};
     use halfgap_geometry::Shape;
@@ -229,7 +227,7 @@ mod tests {
 
     #[test]
     fn a_law_that_changes_branch_just_after_a_step_has_begun_is_seen_to() {
-        for delay in [1e-9, 1e-6, 0.5 * SIGN_AT, 0.3] {
+        for delay in [1e-9, 1e-6, 0.5 * LOOK_AHEAD, 0.3] {
             let offset = rings_at(delay, false).expect("it rings");
             assert!((offset - delay).abs() < 1e-12, "{offset}");
         }

@@ -14,6 +14,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
+use crate::rigid::shares::TINY;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::steps::Pace;
 use crate::rigid::zeno::turns::too_fast;
@@ -25,15 +26,12 @@ const HOPELESS: f64 = 1e10;
 /// Number of hopeless means in succession after which the run is given up: steps may be short for a while.
 const PACES: u32 = 10;
 
-/// A group is hasty if that mean is less than this fraction of the resolution time.
-const HASTE: f64 = 1e-4;
-
 /// Notes the step that a group has begun. If its steps have become hopelessly short, the error is kept in the
 /// memory, to be returned once the event is over.
 pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
     let pace = &mut zeno.paces[group.leader().index()];
     if let Some(mean) = pace.few.note(group.start()) {
-        pace.is_hasty = mean < HASTE * assembly.settings().resolution_time;
+        pace.is_hasty = mean < TINY * assembly.settings().resolution_time;
     }
     let mean = pace.all.note(group.start());
     zeno.crawls = None;
@@ -114,8 +112,8 @@ mod tests {
     #[test]
     fn a_group_is_hasty_whose_steps_are_short_beside_the_resolution_time() {
         let soon = resting_discs(&[0.0]).assembly.settings().resolution_time;
-        assert_eq!(haste(0.5 * HASTE * soon), [true, false]);
-        assert_eq!(haste(2.0 * HASTE * soon), [false, false]);
+        assert_eq!(haste(0.5 * TINY * soon), [true, false]);
+        assert_eq!(haste(2.0 * TINY * soon), [false, false]);
     }
 
     #[test]

@@ -11,11 +11,11 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::contacts::rows::row_of;
+use crate::rigid::shares::{LARGE, NEGLIGIBLE};
 use crate::rigid::zeno::memory::{Recent, Zeno};
+use crate::rigid::zeno::repeats::CALM_REPEATS;
 use halfgap_collision::{BodyId, Collision, Tolerances};
 
-/// Number of events of a body within the resolution time that are no storm yet, if they are neither wide nor costly.
-const CALM_EVENTS: usize = 20;
 /// Number of such events that each row of the region allows beyond them.
 const CALM_EVENTS_PER_ROW: usize = 10;
 /// Storm load of an event that is both wide and costly.
@@ -26,11 +26,6 @@ const LOAD_OF_ONE: usize = 100;
 const LOAD_OF_NEITHER: usize = 50 * LOAD_OF_ONE;
 /// Storm load of a body up to which no event is examined for its cost: so few events make no storm.
 const LOAD_WITHOUT_COST: usize = 10 * LOAD_OF_ONE;
-/// An event is wide if its bodies came towards each other by more than this multiple of the target gap since the one
-/// before: a light body between heavy ones that close on it rattles ever faster until it has turned them back.
-const WIDE: f64 = 10.0;
-/// An event is costly if stopping its contact would take more than this fraction of the kinetic energy of its bodies.
-const COSTLY: f64 = 1e-3;
 /// An event is still if it follows the one before at once, and its bodies came towards each other in between by less
 /// than this fraction of the half-width of the target zone. Such events are counted on beyond the resolution time,
 /// however long they go on: forces that the start did not show press contacts together, of which now the one, now the
@@ -51,7 +46,7 @@ pub(crate) fn note_events(
     let (now, window) = (assembly.now(), assembly.settings().resolution_time);
     let speed = records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
     let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
-    let (wide, still) = (WIDE * target_gap, STILL * accuracy);
+    let (wide, still) = (LARGE * target_gap, STILL * accuracy);
     let at_once = AT_ONCE * assembly.settings().steps.length / assembly.settings().steps.speed;
     let is_often = bodies.iter().any(|body| zeno.recent[body.index()].load > LOAD_WITHOUT_COST);
     let is_costly = is_often && is_costly(assembly, of);
@@ -73,7 +68,7 @@ pub(crate) fn note_events(
         recent.last = Some(now);
         most = most.max(recent.load);
     }
-    let calm = CALM_EVENTS + CALM_EVENTS_PER_ROW * records.len();
+    let calm = CALM_REPEATS as usize + CALM_EVENTS_PER_ROW * records.len();
     let is_storm = most > LOAD_OF_NEITHER * calm;
     if is_storm {
         books.note_storm();
@@ -84,7 +79,7 @@ pub(crate) fn note_events(
     is_storm
 }
 
-/// True if stopping one of the contacts that close would take more than [`COSTLY`] of the kinetic
+/// True if stopping one of the contacts that close would take more than [`NEGLIGIBLE`] of the kinetic
 /// energy of its bodies.
 fn is_costly(assembly: &Assembly, (bodies, records): (&[BodyId], &[Collision])) -> bool {
     let closing = records.iter().map(|record| {
@@ -96,5 +91,5 @@ fn is_costly(assembly: &Assembly, (bodies, records): (&[BodyId], &[Collision])) 
         let trajectory = assembly.trajectory(body);
         trajectory.body().kinetic_energy(&trajectory.state_at(assembly.now()))
     });
-    closing.fold(0.0, f64::max) > COSTLY * moving.sum::<f64>()
+    closing.fold(0.0, f64::max) > NEGLIGIBLE * moving.sum::<f64>()
 }

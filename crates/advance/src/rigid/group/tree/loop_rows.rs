@@ -10,6 +10,7 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::{Hinge, JointTree};
+use crate::rigid::shares::{LARGE, ROUNDS};
 use glam::DVec2;
 
 /// Kept share of a row at or below which a new tree is given up: its rows depend on each other.
@@ -19,15 +20,6 @@ const SINGULAR: f64 = 1e-6;
 /// for a moment, and where the forces that hold them are finite but lost in rounding. The error that softness makes
 /// lasts while the loop is within the square root of this (as an angle) of the point, and falls fast farther away.
 const SOFTNESS: f64 = 1e-8;
-
-/// Largest square of a row by which its kept share is measured, as a multiple of the square of its heavier side.
-const HEAVIER: f64 = 10.0;
-
-/// Largest number of refinements that restore the forces which softness takes away. Each leaves, of the missing force,
-/// the fraction of the kept share, softness included, that is softness. Two suffice at a share of a millionth, as for a
-/// light body that pushes along its pin. Nearer to 0 the error falls with the inverse of their number, and noise grows
-/// with it.
-const MOST_REFINEMENTS: usize = 10;
 
 /// The rows beside the pins of a tree, with their buffers.
 #[derive(Clone, Debug, Default)]
@@ -72,7 +64,7 @@ impl JointTree {
         self.loop_rows.columns = columns;
     }
 
-    /// J M^-1 J^T of a row by itself, without pins, at most [`HEAVIER`] times that of its heavier side. The part of a
+    /// J M^-1 J^T of a row by itself, without pins, at most [`LARGE`] times that of its heavier side. The part of a
     /// much lighter body would be larger, but is often held by a pin to which the row points.
     fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
         let of_side = |(side, place): (usize, Option<u32>)| {
@@ -87,7 +79,7 @@ impl JointTree {
         };
         let squares = [(0, sides[0]), (1, sides[1])].map(of_side);
         let heavier = squares.into_iter().filter(|&square| square > 0.0).fold(f64::INFINITY, f64::min);
-        squares.iter().sum::<f64>().min(HEAVIER * heavier)
+        squares.iter().sum::<f64>().min(LARGE * heavier)
     }
 
     /// Accelerations of the tree, body by body of the group, under a force of 1 N along a row.
@@ -266,7 +258,7 @@ impl Dynamics<'_> {
         let mut left = tree.loop_rows.softness;
         let mut lacking = std::mem::take(&mut tree.loop_rows.lacking);
         let mut corrections = std::mem::take(&mut tree.loop_rows.corrections);
-        for _ in 0..MOST_REFINEMENTS {
+        for _ in 0..ROUNDS {
             if left <= f64::EPSILON {
                 break;
             }
