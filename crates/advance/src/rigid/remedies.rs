@@ -25,22 +25,14 @@ pub enum Remedy {
     LowBounces,
     /// Contacts that open so slowly that forces close them again within the zone are held at once.
     LowHops,
-    /// A pair that fires very often at one time is stopped without elasticity.
-    Repeats,
     /// Bodies with more events than forces can resolve are stopped without elasticity.
     Storms,
-    /// In groups whose steps are very short, or that were ended at once, contacts that open ever so slowly are let go.
-    Haste,
     /// A group made anew at the time at which another was ended because a contact pulled may pull again at its start.
     Patience,
-    /// Contacts farther apart than the gap at which bodies fire are left out of impacts whose impulses cancel each other.
-    JammedImpulses,
     /// A point that an impact drives off both sides of its corner is kept on one of them.
     HeldInCorner,
     /// A point that two forces do not hold in its corner leaves that along one of its sides.
     LooseCorner,
-    /// Contacts beyond their target gap are left out where forces exceed all loads by far.
-    JammedForces,
     /// Contacts that act by next to no lever on a body held by connectors are let pass.
     LetPass,
     /// Contacts that run off at once are left out where two corners hand over to each other without end.
@@ -49,16 +41,10 @@ pub enum Remedy {
     RestingContradiction,
     /// Candidates that depend on others are spared where the rows found would pull as equations.
     Sparing,
-    /// Candidates that nearly depend on others are spared, since as equations they have immense forces.
-    NearlySparing,
     /// Contacts that have sunk too deep are lifted as they are held.
     Lifting,
     /// Contacts without force that start a segment below their gap by rounding fire at a lower one.
     SunkLowered,
-    /// Groups whose projection brings contacts nearer by more than their zone are made anew with fewer rows.
-    Displaced,
-    /// Groups whose rows drive other contacts together are made anew without those that open slowly.
-    Driven,
     /// An event that was corrected beyond another contact goes back to that.
     Passed,
     /// Groups are cut by dense output where a repeated step has touching features elsewhere.
@@ -71,7 +57,7 @@ pub enum Remedy {
 
 impl Remedy {
     /// All remedies, in the order of their declaration.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 22] = [
         Self::GhostCorners,
         Self::DeadPoints,
         Self::Insistence,
@@ -80,23 +66,16 @@ impl Remedy {
         Self::PassingBy,
         Self::LowBounces,
         Self::LowHops,
-        Self::Repeats,
         Self::Storms,
-        Self::Haste,
         Self::Patience,
-        Self::JammedImpulses,
         Self::HeldInCorner,
         Self::LooseCorner,
-        Self::JammedForces,
         Self::LetPass,
         Self::LeavingNeighbours,
         Self::RestingContradiction,
         Self::Sparing,
-        Self::NearlySparing,
         Self::Lifting,
         Self::SunkLowered,
-        Self::Displaced,
-        Self::Driven,
         Self::Passed,
         Self::CutByDense,
         Self::SoftRows,
@@ -115,23 +94,16 @@ impl Remedy {
             Self::PassingBy => "passing_by",
             Self::LowBounces => "low_bounces",
             Self::LowHops => "low_hops",
-            Self::Repeats => "repeats",
             Self::Storms => "storms",
-            Self::Haste => "haste",
             Self::Patience => "patience",
-            Self::JammedImpulses => "jammed_impulses",
             Self::HeldInCorner => "held_in_corner",
             Self::LooseCorner => "loose_corner",
-            Self::JammedForces => "jammed_forces",
             Self::LetPass => "let_pass",
             Self::LeavingNeighbours => "leaving_neighbours",
             Self::RestingContradiction => "resting_contradiction",
             Self::Sparing => "sparing",
-            Self::NearlySparing => "nearly_sparing",
             Self::Lifting => "lifting",
             Self::SunkLowered => "sunk_lowered",
-            Self::Displaced => "displaced",
-            Self::Driven => "driven",
             Self::Passed => "passed",
             Self::CutByDense => "cut_by_dense",
             Self::SoftRows => "soft_rows",

@@ -22,12 +22,6 @@ impl Books {
         self.counts
     }
 
-    /// The ledger.
-    #[inline]
-    pub(crate) fn ledger(&self) -> &Ledger {
-        &self.ledger
-    }
-
     /// The told.
     #[inline]
     pub(crate) fn told(&self) -> &Told {
@@ -125,11 +119,6 @@ impl Books {
     /// Books the work [J] of a force law without a potential, or of damping.
     pub(crate) fn book_work(&mut self, work: Work, value: f64) {
         self.ledger.book(work, value);
-    }
-
-    /// Takes back the projections of groups that are made anew: the books are at a value [J] again.
-    pub(crate) fn unbook_projections(&mut self, before: f64) {
-        self.ledger.projections = before;
     }
 
     /// Opens an account for the work of a law that was added.

@@ -9,7 +9,7 @@ use crate::rigid::contacts::gaps::features_in;
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::corners::leave_loose_corner;
-use crate::rigid::event::harm::regroup_soundly;
+use crate::rigid::event::groups::regroup;
 use crate::rigid::event::rails::note_rails;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::rules::{lower_insistent, set_rules};
@@ -19,8 +19,6 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::remedies::Remedy;
-use crate::rigid::zeno::pace::take_haste;
-use crate::rigid::zeno::repeats::has_pulled;
 use halfgap_geometry::GapSample;
 
 /// Finds the held rows, makes groups, and predicts: the bodies of the region are in flight with their new
@@ -30,11 +28,6 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
         rooms.assembly.trajectory_mut(body).unwind();
     }
     note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now());
-    // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
-    let is_hasty =
-        take_haste(&mut rooms.zeno, work.region.bodies()) || has_pulled(&rooms.zeno, rooms.assembly.now());
-    let is_hasty = is_hasty && rooms.assembly.remedies().act(Remedy::Haste);
-    work.region.set_hasty(is_hasty);
     settle_and_still(rooms, work)?;
     while leave_loose_corner(rooms, work)? {
         settle_and_still(rooms, work)?;
@@ -44,7 +37,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     let touching = work.region.touches().iter().copied().zip(work.region.motions().iter().copied());
     let fired = work.region.cause().fired().map(|touch| (touch, work.fired_open));
     note_seen(&rooms.assembly, &mut rooms.pairs, touching, fired);
-    let outcome = regroup_soundly(rooms, work);
+    let outcome = regroup(rooms, &work.region, &work.settling);
     note_begins(&rooms.assembly, &mut rooms.books, &work.region, &work.settling);
     outcome?;
     set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, work);

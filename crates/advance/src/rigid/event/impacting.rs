@@ -35,14 +35,13 @@ pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
 
 /// Resolves the impact of a region whose bodies are in flight, and goes on.
 pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
-    // One event too many in a short time, or of one pair without time going by, is resolved without elasticity.
+    // One event too many in a short time is resolved without elasticity.
     let in_storm = {
         let of = (work.region.bodies(), work.region.records());
         note_events(&rooms.assembly, &mut rooms.zeno, &mut rooms.books, of)
     };
     work.region.set_in_storm(in_storm && rooms.assembly.remedies().act(Remedy::Storms));
-    let repeats = work.repeats > 0 && rooms.assembly.remedies().act(Remedy::Repeats);
-    let is_storm = work.region.in_storm() || repeats;
+    let is_storm = work.region.in_storm();
     let mut report = rooms.books.take_report();
     let now = rooms.assembly.now();
     let is_lawful = !is_storm && work.region.cause() != Cause::Tick;

@@ -14,14 +14,13 @@ use crate::rigid::group::attempt::StepFailure;
 use crate::rigid::group::groups::{Groups, part, put_group, with_group};
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
-use crate::rigid::region::touching::Region;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::watch::extending::extend_watched;
 use crate::rigid::watch::releases::look_for_release;
 use crate::rigid::zeno::pace::{names_of_laws, note_pace};
 use crate::rigid::zeno::repeats::has_pulled;
-use halfgap_collision::{BodyId, BodyState};
+use halfgap_collision::BodyId;
 
 /// Ends a group, whose bodies are in flight; its works are booked.
 pub(crate) fn dissolve(rooms: &mut Rooms, leader: BodyId) {
@@ -55,26 +54,6 @@ fn book_works(books: &mut Books, group: &Group) {
     let first = 2 * group.velocities();
     for (&work, &value) in group.works().iter().zip(&group.end_state()[first..]) {
         books.book_work(work, value);
-    }
-}
-
-/// Forgets the groups of a region that have just been made: its bodies are in flight again, in the states before.
-pub(crate) fn undo_groups(
-    assembly: &mut Assembly,
-    connectors: &mut Connectors,
-    groups: &mut Groups,
-    agenda: &mut Agenda,
-    region: &Region,
-    before: &[BodyState],
-) {
-    complete_dense(assembly, connectors, groups);
-    for (&body, &state) in region.bodies().iter().zip(before) {
-        if let Some(leader) = assembly.leader_of()[body.index()] {
-            agenda.clear(Source::Group(leader));
-            drop_group(assembly, connectors, groups, leader);
-        }
-        let now = assembly.now();
-        assembly.trajectory_mut(body).fly_from(now, state);
     }
 }
 

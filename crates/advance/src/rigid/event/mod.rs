@@ -7,7 +7,7 @@
 //! * from the agenda: `handling`, `events` (by source), `joints` and `ticks` (points that come to a joint, sunk contacts);
 //! * velocities: `impacting`, `changing` (held rows change), `resolving`, `intervention` (by the caller), `lift` and `shift`
 //!   (sunk bodies are put back);
-//! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `harm` (groups made anew), `rules` (what the
+//! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `rules` (what the
 //!   search skips), `telling`;
 //! * groups: `coupling` and `members` (who shares steps), `groups` (made), `life` (from start to end), `cutting`, `rails`
 //!   (hints);
@@ -21,7 +21,6 @@ pub(super) mod events;
 pub(super) mod going_on;
 pub(super) mod groups;
 pub(super) mod handling;
-pub(super) mod harm;
 pub(super) mod hops;
 pub(super) mod impacting;
 pub(super) mod intervention;

@@ -42,7 +42,7 @@ pub(crate) fn drop_idle(
         let is_released = Touch::of(&record).is_some_and(|touch| region.cause() == Cause::Released(touch));
         let share = if is_released { NEGLIGIBLE } else { IDLE_SHARE };
         let least = share * loads.fold(f64::INFINITY, f64::min);
-        let lies_deep = !region.is_unsound() && lifted(assembly, pairs, &record).is_some();
+        let lies_deep = lifted(assembly, pairs, &record).is_some();
         let stays = record.parties.bilateral || force > least || lies_deep;
         region.set_force(index, if stays { force } else { 0.0 });
         any |= !stays && force > 0.0;
@@ -62,7 +62,7 @@ pub(crate) fn choose_rows(
 ) {
     for &index in &settling.candidates {
         let record = &region.records()[index];
-        let lifted = if region.is_unsound() { None } else { lifted(assembly, pairs, record) };
+        let lifted = lifted(assembly, pairs, record);
         if lifted.is_some() {
             assembly.remedies().act(Remedy::Lifting);
         }

@@ -3,15 +3,13 @@
 
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::ROUNDED_FORCE;
-use halfgap_contact::{HeldRows, InverseInertia, Settings};
+use halfgap_contact::{HeldRows, InverseInertia};
 
 /// The candidates as equations, with buffers.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Redundant {
     pub(super) rows: Rows,
     pub(super) held: HeldRows,
-    /// Takes rows for dependent that are so nearly.
-    pub(super) nearly: HeldRows,
     /// Forces [N] that elimination finds for held rows.
     pub(super) as_held: Vec<f64>,
 }
@@ -27,18 +25,6 @@ pub(crate) struct Rows {
     pub(super) bilateral: Vec<bool>,
     /// Rows to be spared.
     pub(super) spared: Vec<usize>,
-}
-
-impl Default for Redundant {
-    fn default() -> Self {
-        let nearly = Settings { dependence: NEARLY, ..Settings::default() };
-        Self {
-            rows: Rows::default(),
-            held: HeldRows::default(),
-            nearly: HeldRows::new(&nearly),
-            as_held: Vec::new(),
-        }
-    }
 }
 
 impl Rows {
@@ -99,6 +85,3 @@ fn drop_rows<T>(list: &mut Vec<T>, rows: &[usize]) {
         !is_dropped
     });
 }
-
-/// Fraction of a row's square, left by other rows, up to which the row nearly depends on them.
-pub(crate) const NEARLY: f64 = 1e-6;

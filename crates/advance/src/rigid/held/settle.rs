@@ -19,13 +19,12 @@ use crate::rigid::held::hops::{is_low_hop, may_hop};
 use crate::rigid::held::jammed::is_jammed;
 use crate::rigid::held::passing::let_pass;
 use crate::rigid::held::settling::Settling;
-use crate::rigid::held::sparing::{spare_nearly_redundant, spare_redundant};
-use crate::rigid::impact::jams::is_close;
+use crate::rigid::held::sparing::spare_redundant;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
-use crate::rigid::shares::{NEGLIGIBLE, ROUNDED};
+use crate::rigid::shares::ROUNDED;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyAcceleration, BodyId, Collision};
@@ -63,10 +62,9 @@ pub(crate) fn settle(
         (false, true) => view.assembly.storm_rest(),
         (false, false) => view.assembly.rest_speed(),
     };
-    let share = if region.is_hasty() { NEGLIGIBLE } else { 1.0 };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
-        let is_slow = (-rest..=share * rest).contains(&record.motion.normal_velocity);
+        let is_slow = (-rest..=rest).contains(&record.motion.normal_velocity);
         record.parties.bilateral || (holds(view.assembly, record) && is_slow)
     };
     let records = || region.records().iter().enumerate();
@@ -88,11 +86,6 @@ pub(crate) fn settle(
     // A contact that carries too little to be held is given no force: the others are solved without it.
     while drop_idle(view.assembly, view.pairs, region, settling, stage) {
         solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
-    }
-    let may_nearly_depend =
-        region.is_unsound() || (!is_start && (settling.is_shared() || settling.has_pulled));
-    if may_nearly_depend && view.assembly.remedies().is_on(Remedy::NearlySparing) {
-        spare_nearly_redundant(view.assembly, region, settling);
     }
     if (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::Sparing) {
         // The last problem may still have had candidates that were then dropped without a force.
@@ -131,18 +124,10 @@ fn solve_candidates(
             return Ok(Solved::Soundly);
         }
     }
-    let remedies = assembly.remedies();
-    settling.dropped.clear();
-    if remedies.act(Remedy::JammedForces) {
-        drop_distant(assembly, region, settling, stage);
+    if is_sound {
+        return Ok(Solved::Soundly);
     }
-    let mut found = settling.solve_strictly();
-    while is_sound && found.is_ok() && take_back_pressed(assembly, region, settling, stage) {
-        pose_problem(assembly, region, settling, stage);
-        found = settling.solve_strictly();
-    }
-    let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
-    if let Err(source) = found {
+    if let Err(source) = settling.solve_strictly() {
         // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.
         let velocity = |body: BodyId| assembly.moving_at(body, time).velocity;
@@ -152,13 +137,13 @@ fn solve_candidates(
         let speeds = region.bodies().iter().map(|&body| (velocity(body) - frame).length());
         let fastest = speeds.fold(rest, f64::max);
         let is_rounding = scale <= 2.0 * rest * fastest / assembly.settings().steps.length;
-        if !(is_rounding && remedies.act(Remedy::RestingContradiction)) {
+        if !(is_rounding && assembly.remedies().act(Remedy::RestingContradiction)) {
             return Err(settle_error(assembly, region, settling, time, source));
         }
         settling.solution.force.clear();
         settling.solution.force.resize(settling.candidates.len(), 0.0);
     }
-    Ok(solved)
+    Ok(Solved::Somehow)
 }
 
 /// Adds the contacts that open in no more than a low hop under the forces of the candidates; true if there are any.
@@ -217,38 +202,6 @@ pub(crate) fn accelerations_of(
 /// True if a unilateral row may carry a force: connectors always do.
 pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
     assembly.settings().impulse_step.is_none() || record.parties.primary.site.is_none()
-}
-
-/// Leaves out contacts beyond their target gap, which need not be in contact: a body that fits between two others
-/// with little room touches at most one of them.
-fn drop_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
-    let Settling { candidates, dropped, .. } = settling;
-    let may_stay = |index: &usize| is_close(assembly, &region.records()[*index]);
-    dropped.clear();
-    dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
-    candidates.retain(may_stay);
-    pose_problem(assembly, region, settling, stage);
-}
-
-/// Takes back the contacts left out that the forces found without them press together; true if there are any. A
-/// body that fits with little room is pressed on one side only. In an arch that is nearly straight all contacts
-/// carry forces far larger than all loads: if the remaining candidates jam, too, all contacts are taken back.
-fn take_back_pressed(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
-    if settling.dropped.is_empty() {
-        return false;
-    }
-    if is_jammed(assembly, region, settling, stage) {
-        settling.take_back(|_| true);
-        return true;
-    }
-    push_bodies(assembly, region, settling, stage);
-    let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    let pushed = std::mem::take(&mut settling.pushed);
-    let is_pressed =
-        |index: usize| offset_under(region, &region.records()[index], &pushed) < -NEGLIGIBLE * scale;
-    let any = settling.take_back(is_pressed);
-    settling.pushed = pushed;
-    any
 }
 
 fn accelerate_region(
@@ -346,7 +299,7 @@ mod tests {
     use crate::rigid::group::groups::group_of;
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::region::collecting::collect_region;
-    use crate::rigid::test_scene::{FINE, resting_discs, rooms_of};
+    use crate::rigid::test_scene::{FINE, rooms_of};
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
@@ -414,24 +367,6 @@ mod tests {
         let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
         let rooms = rooms_of(parts, FINE, Time::ZERO);
         assert!(group_of(&rooms.assembly, &rooms.groups, BodyId(2)).is_none(), "nothing holds it");
-    }
-
-    #[test]
-    fn a_contact_that_opens_as_slowly_as_one_at_rest_is_let_go_where_contacts_take_turns() {
-        let mut rooms = resting_discs(&[0.0]);
-        let mut work = rooms.work.take().expect("the start has made it");
-        dissolve(&mut rooms, BodyId(1));
-        let EventWork { region, settling, .. } = &mut *work;
-        collect_region(&rooms.view(), region, &[BodyId(1)], rooms.assembly.now());
-        let mut stage = rooms.groups.take_stage();
-        for (share, is_hasty, rows) in [(0.5, false, 1), (0.5, true, 0), (1e-4, true, 1), (-0.5, true, 1)] {
-            region.set_hasty(is_hasty);
-            region.records_mut()[0].motion.normal_velocity = share * rooms.assembly.rest_speed();
-            settling.set_likely([None].into_iter());
-            settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), false)
-                .expect("it rests");
-            assert_eq!(settling.held.len(), rows, "{share} of what counts as rest, hasty: {is_hasty}");
-        }
     }
 
     #[test]

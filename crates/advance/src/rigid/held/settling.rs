@@ -9,9 +9,7 @@ use crate::rigid::held::redundant::Redundant;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::NEGLIGIBLE;
 use halfgap_collision::BodyId;
-use halfgap_contact::{
-    Auto, InverseInertia, Method, Problem, Settings, Solution, SolveError, Solver, WarmStart,
-};
+use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
 /// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are held.
 const LENIENT_RESIDUAL: f64 = 1e-6;
@@ -32,8 +30,6 @@ pub(crate) struct Settling {
     pub(super) lenient: Auto,
     /// Indices of the records that enter the problem.
     pub(super) candidates: Vec<usize>,
-    /// Indices of the records that were left out because rows seemed to work against each other.
-    pub(super) dropped: Vec<usize>,
     /// Contacts that were left out because they act by next to no lever: they may come as near as grazing contacts.
     pub(super) passing: Vec<Touch>,
     pub(super) levers: Levers,
@@ -81,7 +77,6 @@ impl Default for Settling {
             has_pulled: false,
             lenient: solver(lenient),
             candidates: Vec::new(),
-            dropped: Vec::new(),
             passing: Vec::new(),
             levers: Levers::default(),
             redundant: Redundant::default(),
@@ -103,12 +98,6 @@ impl Settling {
     /// Notes whether a group was ended at the present time as soon as it was made, because one of its contacts pulled.
     pub(crate) fn note_pull(&mut self, has_pulled: bool) {
         self.has_pulled = has_pulled;
-    }
-
-    /// The rows to be held, for tests that change them.
-    #[cfg(test)]
-    pub(crate) fn held_mut(&mut self) -> &mut [(usize, HeldRow)] {
-        &mut self.held
     }
 
     /// Solves for the forces of the candidates, starting from those that are likely to carry some, and notes the
@@ -164,24 +153,6 @@ impl Settling {
             let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
             Some(self.ended[place].1)
         }));
-    }
-
-    /// Takes back the dropped records that are wanted as candidates; true if there are any.
-    pub(super) fn take_back(&mut self, is_wanted: impl Fn(usize) -> bool) -> bool {
-        let before = self.dropped.len();
-        let Self { candidates, dropped, .. } = self;
-        dropped.retain(|&index| {
-            let is_wanted = is_wanted(index);
-            candidates.extend(is_wanted.then_some(index));
-            !is_wanted
-        });
-        candidates.sort_unstable();
-        dropped.len() < before
-    }
-
-    /// True if the last answer may have spread forces over rows that depend on each other.
-    pub(super) fn is_shared(&self) -> bool {
-        self.solution.method == Method::ProximalNewton
     }
 
     /// True if a contact was left out because it acts by next to no lever.

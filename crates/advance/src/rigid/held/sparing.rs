@@ -3,7 +3,7 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::held::jammed::is_jam;
-use crate::rigid::held::redundant::{NEARLY, Redundant, Rows};
+use crate::rigid::held::redundant::{Redundant, Rows};
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
@@ -31,19 +31,6 @@ pub(crate) fn spare_redundant(
     }
     assembly.remedies().act(Remedy::Sparing);
     rows.spare(held, region, candidates);
-}
-
-/// Spares candidates until none nearly depends on the others, if any does. Forces that are spread over such rows
-/// are modest; as equations, the rows would have immense ones.
-pub(crate) fn spare_nearly_redundant(assembly: &Assembly, region: &mut Region, settling: &mut Settling) {
-    let Settling { candidates, redundant, .. } = settling;
-    let Redundant { rows, held, nearly, .. } = redundant;
-    list_candidates(assembly, region, candidates, rows);
-    let dependent = rows.factorize(held);
-    if held.kept_beyond(dependent) <= NEARLY {
-        assembly.remedies().act(Remedy::NearlySparing);
-        rows.spare(nearly, region, candidates);
-    }
 }
 
 /// Lists the rows of the candidates and their forces.

@@ -14,7 +14,6 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
-use crate::rigid::shares::TINY;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::steps::Pace;
 use crate::rigid::zeno::turns::too_fast;
@@ -30,9 +29,6 @@ const PACES: u32 = 10;
 /// memory, to be returned once the event is over.
 pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
     let pace = &mut zeno.paces[group.leader().index()];
-    if let Some(mean) = pace.few.note(group.start()) {
-        pace.is_hasty = mean < TINY * assembly.settings().resolution_time;
-    }
     let mean = pace.all.note(group.start());
     zeno.crawls = None;
     let Some(step) = mean else { return };
@@ -77,44 +73,10 @@ pub(crate) fn forget_paces(zeno: &mut Zeno, bodies: &[BodyId]) {
     bodies.iter().for_each(|body| zeno.paces[body.index()] = Pace::default());
 }
 
-/// True if one of some bodies has led a hasty group; that is then forgotten.
-pub(crate) fn take_haste(zeno: &mut Zeno, bodies: &[BodyId]) -> bool {
-    let mut any = false;
-    for body in bodies {
-        any |= std::mem::take(&mut zeno.paces[body.index()].is_hasty);
-    }
-    any
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::rigid::region::collecting::collect_region;
-    use crate::rigid::test_scene::resting_discs;
-    use crate::rigid::zeno::steps::{Count, FEW_STEPS, STEPS};
+    use crate::rigid::zeno::steps::{Count, STEPS};
     use crate::time::Time;
-
-    /// Hastiness of the group of a disc that makes 64 steps of a length [s] in succession, by a first and by a second
-    /// query.
-    fn haste(step: f64) -> [bool; 2] {
-        let mut rooms = resting_discs(&[0.0]);
-        let mut work = rooms.work.take().expect("the start has made it");
-        collect_region(&rooms.view(), &mut work.region, &[BodyId(1)], rooms.assembly.now());
-        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
-        for _ in 0..=FEW_STEPS {
-            note_pace(&rooms.assembly, &mut rooms.zeno, &group);
-            let (start, made) = (group.start().plus(step), group.made());
-            group.set_times(start, made);
-        }
-        [take_haste(&mut rooms.zeno, work.region.bodies()), take_haste(&mut rooms.zeno, work.region.bodies())]
-    }
-
-    #[test]
-    fn a_group_is_hasty_whose_steps_are_short_beside_the_resolution_time() {
-        let soon = resting_discs(&[0.0]).assembly.settings().resolution_time;
-        assert_eq!(haste(0.5 * TINY * soon), [true, false]);
-        assert_eq!(haste(2.0 * TINY * soon), [false, false]);
-    }
 
     #[test]
     fn the_mean_is_that_of_the_steps_since_it_was_last_told() {
