@@ -13,14 +13,13 @@
 //! gaps: after very many of them in a row the pair meets without elasticity as well.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::contacts::pairs::{PairId, Pairs, Seen};
+use crate::rigid::contacts::pairs::{PairId, Pairs};
+use crate::rigid::contacts::table::Seen;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::shares::{HUGE, LARGE, MAJOR};
 use halfgap_collision::{Collision, Tolerances};
 use halfgap_geometry::FeatureId;
 
-/// Number of feature pairs that are remembered for a pair of bodies.
-const MOST_SEEN: usize = 16;
 /// Number of low bounces in a row after which elasticity no longer acts.
 const MOST_LOW: u32 = 1000;
 
@@ -34,7 +33,7 @@ pub(crate) fn note_seen(
 ) {
     for (touch, (gap, rate)) in touching {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-        let before = pairs.seen(pair).iter().find(|old| old.features == touch.features);
+        let before = pairs.seen(pair, touch.features);
         let low = before.map_or(0, |before| low_bounces(assembly, before, gap));
         let formed = before.map_or(gap, |before| before.formed.max(gap));
         let goes_on = || before.is_some_and(|before| before.fires_open);
@@ -43,14 +42,7 @@ pub(crate) fn note_seen(
             _ => goes_on(),
         };
         let fires_open = fires_open && gap < assembly.settings().tolerances.target_gap;
-        let fresh =
-            Seen { features: touch.features, time: assembly.now(), gap, formed, rate, low, fires_open };
-        let seen = pairs.seen_mut(pair);
-        seen.retain(|old| old.features != fresh.features);
-        if seen.len() == MOST_SEEN {
-            seen.remove(0);
-        }
-        seen.push(fresh);
+        pairs.see(pair, touch.features, Seen { time: assembly.now(), gap, formed, rate, low, fires_open });
     }
 }
 
@@ -79,7 +71,7 @@ fn is_low_bounce(assembly: &Assembly, pairs: &Pairs, record: &Collision) -> bool
 
 /// True if a contact of a pair has fired although it did not close, and has not left its target gap since.
 pub(crate) fn fires_open(pairs: &Pairs, pair: PairId, features: [FeatureId; 2]) -> bool {
-    pairs.seen(pair).iter().any(|seen| seen.features == features && seen.fires_open)
+    pairs.seen(pair, features).is_some_and(|seen| seen.fires_open)
 }
 
 /// The pair of bodies of a record, and its features, that of the body with the lower id first.
@@ -91,9 +83,8 @@ fn features_of(pairs: &Pairs, record: &Collision) -> Option<(PairId, [FeatureId;
 /// Largest gap [m] at which the features of a record have touched; their present gap if they have not been seen
 /// before.
 pub(crate) fn formed_at(pairs: &Pairs, record: &Collision) -> f64 {
-    let before = features_of(pairs, record).and_then(|(pair, features)| {
-        pairs.seen(pair).iter().find(|seen| seen.features == features).map(|seen| seen.formed)
-    });
+    let before = features_of(pairs, record)
+        .and_then(|(pair, features)| pairs.seen(pair, features).map(|seen| seen.formed));
     before.unwrap_or(record.geometry.distance)
 }
 
@@ -107,9 +98,7 @@ pub(crate) fn has_stayed_low(
     down: f64,
     &Tolerances { target_gap, accuracy, velocity_tol }: &Tolerances,
 ) -> bool {
-    let Some(seen) = pairs.seen(pair).iter().find(|seen| seen.features == features) else {
-        return false;
-    };
+    let Some(seen) = pairs.seen(pair, features) else { return false };
     // A pair that closed fast then has not been stopped since.
     if seen.rate < -velocity_tol {
         return false;

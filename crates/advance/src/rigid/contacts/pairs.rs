@@ -2,9 +2,10 @@
 //! none.
 
 use crate::rigid::bodies::instant::is_same_time;
+use crate::rigid::contacts::table::{Contacts, Mode};
 use crate::rigid::contacts::touch::{sorted, touch_of};
 use crate::time::Time;
-use halfgap_collision::{BodyId, Collision, FeatureRule};
+use halfgap_collision::{BodyId, Collision};
 use halfgap_geometry::FeatureId;
 
 /// Index of a pair.
@@ -43,13 +44,10 @@ pub(crate) struct Link {
     pub(crate) other: BodyId,
 }
 
-/// Rules and past contacts of a pair.
+/// Contacts of a pair, and counts of its events.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairPast {
-    /// Rules that change the search of feature pairs.
-    pub(super) rules: Vec<FeatureRule>,
-    /// Feature pairs that have touched lately.
-    pub(super) seen: Vec<Seen>,
+    contacts: Contacts,
     /// Number of contacts handled without time going by since the first of them.
     pub(super) repeats: u32,
     /// Time of the last contact.
@@ -61,29 +59,9 @@ pub(crate) struct PairPast {
 impl PairPast {
     /// Forgets everything but the room of its buffers.
     fn clear(&mut self) {
-        self.rules.clear();
-        self.seen.clear();
+        self.contacts.clear();
         (self.repeats, self.last_contact, self.searches) = (0, None, 0);
     }
-}
-
-/// State of two features at the last event in which they touched.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
-    /// Features of the lesser body and of the other.
-    pub(crate) features: [FeatureId; 2],
-    pub(crate) time: Time,
-    /// Gap [m].
-    pub(crate) gap: f64,
-    /// Largest gap [m] at which they have touched.
-    pub(crate) formed: f64,
-    /// Rate of the gap [m/s].
-    pub(crate) rate: f64,
-    /// Number of low bounces in a row before that event.
-    pub(crate) low: u32,
-    /// True if they fired although they did not close, and have not left their target since: they open too slowly for
-    /// the search to see them leave.
-    pub(crate) fires_open: bool,
 }
 
 /// All pairs, and lists of them by body.
@@ -126,32 +104,16 @@ impl Pairs {
         self.is_fixed[body.index()]
     }
 
-    /// Rules for feature pairs of a pair of bodies.
-    pub(crate) fn rules(&self, id: PairId) -> &[FeatureRule] {
-        &self.pasts[id.0 as usize].rules
+    /// The contacts of a pair.
+    pub(super) fn contacts(&self, id: PairId) -> &Contacts {
+        &self.pasts[id.0 as usize].contacts
     }
 
-    /// Changes the rules of a pair, and updates `has_rules`.
-    pub(crate) fn change_rules<T>(
-        &mut self,
-        id: PairId,
-        change: impl FnOnce(&mut Vec<FeatureRule>) -> T,
-    ) -> T {
-        let rules = &mut self.pasts[id.0 as usize].rules;
-        let answer = change(rules);
-        self.pairs[id.0 as usize].has_rules = !rules.is_empty();
-        answer
-    }
-
-    /// Drops the rules of all pairs of a body.
-    pub(crate) fn clear_rules_of(&mut self, body: BodyId) {
-        for link in &self.of_body[body.index()] {
-            let pair = &mut self.pairs[link.pair.0 as usize];
-            if pair.has_rules {
-                pair.has_rules = false;
-                self.pasts[link.pair.0 as usize].rules.clear();
-            }
-        }
+    /// Changes the contacts of a pair, and updates `has_rules`.
+    pub(super) fn change_contacts(&mut self, id: PairId, change: impl FnOnce(&mut Contacts)) {
+        let contacts = &mut self.pasts[id.0 as usize].contacts;
+        change(contacts);
+        self.pairs[id.0 as usize].has_rules = contacts.any_mode();
     }
 
     pub(crate) fn past(&self, id: PairId) -> &PairPast {
@@ -160,13 +122,6 @@ impl Pairs {
 
     pub(crate) fn past_mut(&mut self, id: PairId) -> &mut PairPast {
         &mut self.pasts[id.0 as usize]
-    }
-
-    /// Forgets what has touched lately of all pairs of a body.
-    pub(crate) fn forget_seen_of(&mut self, body: BodyId) {
-        for link in &self.of_body[body.index()] {
-            self.pasts[link.pair.0 as usize].seen.clear();
-        }
     }
 
     /// Counts a contact of a pair at a time; returns how many came before without time going by.
@@ -224,15 +179,6 @@ impl Pairs {
         }
     }
 
-    /// Feature pairs that have touched lately.
-    pub(crate) fn seen(&self, id: PairId) -> &[Seen] {
-        &self.pasts[id.0 as usize].seen
-    }
-
-    pub(crate) fn seen_mut(&mut self, id: PairId) -> &mut Vec<Seen> {
-        &mut self.pasts[id.0 as usize].seen
-    }
-
     /// Pairs of a body that is not fixed, in an order that depends on the past alone.
     pub(crate) fn of_body(&self, body: BodyId) -> &[Link] {
         &self.of_body[body.index()]
@@ -285,12 +231,12 @@ impl Pairs {
     }
 }
 
-/// True if a contact is held now, so that the search skips it.
+/// True if a contact is held or watched now, so that the search skips it.
 pub(crate) fn is_held_contact(pairs: &Pairs, record: &Collision, bodies: [BodyId; 2]) -> bool {
     let (Some(touch), Some(pair)) = (touch_of(record, bodies), pairs.between(bodies[0], bodies[1])) else {
         return false;
     };
-    pairs.rules(pair).contains(&touch.skipped())
+    matches!(pairs.mode(pair, touch.features), Some(Mode::Active | Mode::Idle | Mode::Passed))
 }
 
 /// `Some(true)` if a record is likely to carry a force, since its contact is held until now; `None` if nothing is

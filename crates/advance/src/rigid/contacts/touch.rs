@@ -1,6 +1,6 @@
 //! Two features that touch, one of each of two bodies.
 
-use halfgap_collision::{BodyId, Collision, FeatureRule};
+use halfgap_collision::{BodyId, Collision};
 use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
@@ -24,16 +24,6 @@ impl Touch {
         } else {
             Self { bodies: [bodies[1], bodies[0]], features: [features[1], features[0]] }
         }
-    }
-
-    /// Rule by which the search skips the features.
-    pub(crate) fn skipped(&self) -> FeatureRule {
-        FeatureRule { features: self.features, target: None }
-    }
-
-    /// Rule by which the features fire only at a gap [m].
-    pub(crate) fn lowered_to(&self, gap: f64) -> FeatureRule {
-        FeatureRule { features: self.features, target: Some(gap) }
     }
 }
 

@@ -118,9 +118,7 @@ pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
         let stays =
             gap < opened && gap > -rooms.assembly.settings().tolerances.distance_tol() && !has_run_off;
         if !stays && let Some(pair) = rooms.pairs.between(touch.bodies[0], touch.bodies[1]) {
-            rooms.pairs.change_rules(pair, |rules| rules.retain(|rule| rule.features != features));
-            // The contact has left the target zone: its return is no low bounce.
-            rooms.pairs.seen_mut(pair).retain(|seen| seen.features != features);
+            rooms.pairs.forget_contact(pair, features);
             touched.push(pair);
         }
         stays

@@ -3,6 +3,7 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::bounces::fires_open;
 use crate::rigid::contacts::pairs::Pairs;
+use crate::rigid::contacts::table::Mode;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::event::groups::is_watched;
 use crate::rigid::event::work::EventWork;
@@ -13,7 +14,7 @@ use crate::rigid::search::dead_point::dead_point_gap;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::sinking::depth::sinks_to;
 use crate::rigid::zeno::repeats::repeats_beyond_calm;
-use halfgap_collision::{FeatureRule, pair_tolerances};
+use halfgap_collision::pair_tolerances;
 
 /// Distance by which a body that touches another fires later elsewhere, as a fraction of the accuracy: more than
 /// rounding.
@@ -38,16 +39,18 @@ pub(crate) fn set_rules(
     EventWork { region, settling, .. }: &EventWork,
 ) {
     let rest = assembly.rest_speed();
-    region.bodies().iter().for_each(|&body| pairs.clear_rules_of(body));
+    region.bodies().iter().for_each(|&body| pairs.forget_modes_of(body));
     let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
     set_trigger_gaps(assembly, search, region);
     for (touch, &(gap, rate)) in region.touches().iter().zip(region.motions()) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
         let is_held = settling.holds_touch(*touch);
-        let rule: FeatureRule = if is_held || is_watched(assembly, groups, *touch) {
-            touch.skipped()
+        let mode = if is_held {
+            Mode::Active
+        } else if is_watched(assembly, groups, *touch) {
+            Mode::Idle
         } else if settling.lets_pass(*touch) {
-            touch.lowered_to(dead_point_gap(assembly, touch.bodies))
+            Mode::Open(dead_point_gap(assembly, touch.bodies))
         } else {
             // A contact that fires although it does not close would do so again at once: it may sink, but no
             // farther than its zone.
@@ -55,10 +58,10 @@ pub(crate) fn set_rules(
                 || (gap > least
                     && fires_open(pairs, pair, touch.features)
                     && assembly.remedies().act(Remedy::OpenFiring));
-            touch.lowered_to(if stays { sinks_to(assembly, *touch, gap) } else { opens_to(assembly, *touch) })
+            Mode::Open(if stays { sinks_to(assembly, *touch, gap) } else { opens_to(assembly, *touch) })
         };
-        if !is_idle(assembly, search, touch, &rule) {
-            pairs.change_rules(pair, |rules| rules.push(rule));
+        if !says_nothing(assembly, search, touch, mode) {
+            pairs.set_mode(pair, touch.features, mode);
         }
     }
 }
@@ -82,11 +85,7 @@ pub(crate) fn lower_insistent(
         if lower == 0.0 {
             continue;
         }
-        pairs.change_rules(pair, |rules| {
-            for rule in rules {
-                rule.target = rule.target.map(|target| target - lower);
-            }
-        });
+        pairs.lower_open(pair, lower);
         // The trigger gap of a body that cannot move would never be raised again: it is in no region.
         for body in pairs.bodies(pair).into_iter().filter(|&body| region.place(body).is_some()) {
             let trigger_gap = search.lanes()[body.index()].trigger_gap();
@@ -96,11 +95,11 @@ pub(crate) fn lower_insistent(
     search.put_touched(insistent);
 }
 
-/// True if a rule for two discs says only what holds without it.
-fn is_idle(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, rule: &FeatureRule) -> bool {
+/// True if a mode of a contact of two discs says only what holds without it.
+fn says_nothing(assembly: &Assembly, search: &Neighbourhood, touch: &Touch, mode: Mode) -> bool {
     let target = assembly.settings().tolerances.target_gap;
     let mut lanes = touch.bodies.iter().map(|body| &search.lanes()[body.index()]);
-    rule.target == Some(target) && lanes.all(|lane| lane.radius() > 0.0 && lane.trigger_gap() == target)
+    mode == Mode::Open(target) && lanes.all(|lane| lane.radius() > 0.0 && lane.trigger_gap() == target)
 }
 
 /// Sets the gap at which each body of a region fires: its target, or a little less than the gap of a contact that

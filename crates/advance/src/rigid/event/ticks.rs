@@ -13,6 +13,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::bounces::has_stayed_low;
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::pairs::PairId;
+use crate::rigid::contacts::table::Mode;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::event::impacting::handle_impact;
@@ -49,10 +50,7 @@ pub(crate) fn sinks(rooms: &mut Rooms, pair: PairId, features: [FeatureId; 2]) -
     }
     let lowest = (tolerances.target_gap - FIRST_SHARE * room).min(gap - FURTHER_SHARE * room);
     let tick = next_tick(&rooms.assembly, &mut rooms.sinking, step);
-    rooms.pairs.change_rules(pair, |rules| {
-        rules.retain(|rule| rule.features != features);
-        rules.push(touch.lowered_to(lowest));
-    });
+    rooms.pairs.set_mode(pair, features, Mode::Open(lowest));
     rooms.sinking.wait(touch);
     // The search goes on for the other features of the two bodies.
     rooms.searching().predict(pair);

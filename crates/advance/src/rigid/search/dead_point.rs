@@ -10,13 +10,14 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::pairs::PairId;
+use crate::rigid::contacts::table::Mode;
 use crate::rigid::contacts::touch::{DEEPEST, Touch};
 use crate::rigid::remedies::Remedy;
 use crate::rigid::search::searching::Searching;
 use crate::rigid::shares::NEARLY_ALL;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, ConnectorId, FeatureRule};
+use halfgap_collision::{BodyId, Collision, ConnectorId};
 use halfgap_geometry::{Feature, FeatureId};
 
 /// Apparent loss of a gap as a multiple of the connectors' error in the middle of a step.
@@ -28,20 +29,15 @@ impl Searching<'_> {
     pub(crate) fn turns_back(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
         let touch = Touch { bodies: self.pairs.bodies(pair), features };
         let most = dead_point_gap(self.assembly, touch.bodies);
-        let has_come =
-            |rule: &FeatureRule| rule.features == features && rule.target.is_some_and(|gap| gap <= most);
-        if self.pairs.rules(pair).iter().any(has_come) || !turns_back(self.assembly, self.connectors, touch) {
+        let has_come = matches!(self.pairs.mode(pair, features), Some(Mode::Open(gap)) if gap <= most);
+        if has_come || !turns_back(self.assembly, self.connectors, touch) {
             return false;
         }
         if !self.assembly.remedies().act(Remedy::DeadPoints) {
             return false;
         }
-        let rule = touch.lowered_to(least_dead_point_gap(self.assembly, touch.bodies));
-        self.pairs.change_rules(pair, |rules| {
-            // Of several rules for the same features the first counts.
-            rules.retain(|rule| rule.features != features);
-            rules.push(rule);
-        });
+        let gap = least_dead_point_gap(self.assembly, touch.bodies);
+        self.pairs.set_mode(pair, features, Mode::Open(gap));
         self.predict(pair);
         true
     }

@@ -8,12 +8,13 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::pairs::PairId;
+use crate::rigid::contacts::table::Mode;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::search::searching::Searching;
 use crate::rigid::shares::{NEGLIGIBLE, SEVERAL};
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, FeatureRule, Moving};
+use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Edge, Feature, FeatureId};
 
 /// Angle [rad] up to which edges are flush, whatever their lengths. Bodies that rest in a wide target zone may lie
@@ -51,8 +52,7 @@ impl Searching<'_> {
     /// True if two features that fire are those of corners that pass over each other: the search skips these from now
     /// on.
     pub(crate) fn passes_over(&mut self, pair: PairId, features: [FeatureId; 2]) -> bool {
-        let is_left_alone = |rule: &FeatureRule| rule.features == features && rule.target.is_none();
-        if self.pairs.rules(pair).iter().any(is_left_alone) {
+        if matches!(self.pairs.mode(pair, features), Some(Mode::Active | Mode::Idle | Mode::Passed)) {
             return false;
         }
         let bodies = self.pairs.bodies(pair);
@@ -60,13 +60,9 @@ impl Searching<'_> {
         if !self.assembly.remedies().act(Remedy::GhostCorners) {
             return false;
         }
-        self.pairs.change_rules(pair, |rules| {
-            for features in passing.into_iter().flatten() {
-                // Of several rules for the same features the first counts.
-                rules.retain(|rule| rule.features != features);
-                rules.push(FeatureRule { features, target: None });
-            }
-        });
+        for features in passing.into_iter().flatten() {
+            self.pairs.set_mode(pair, features, Mode::Passed);
+        }
         self.predict(pair);
         true
     }

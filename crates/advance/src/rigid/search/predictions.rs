@@ -3,6 +3,7 @@
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::path::Path;
 use crate::rigid::contacts::pairs::{Link, PairId, Prediction};
+use crate::rigid::contacts::table::Mode;
 use crate::rigid::search::lane::{Lane, LaneKind};
 use crate::rigid::search::searching::Searching;
 use crate::rigid::sinking::depth::may_have_sunk_by;
@@ -11,7 +12,7 @@ use halfgap_collision::{
     BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, SearchSettings, Tolerances,
     disc_contact,
 };
-use halfgap_geometry::GapSample;
+use halfgap_geometry::{FeatureId, GapSample};
 
 /// Longest span [s] of one search: bounds over it stay finite.
 pub(crate) const LONGEST_SPAN: f64 = 1e6;
@@ -203,13 +204,12 @@ impl Searching<'_> {
             (&self.assembly.trajectory(a).body().shape, &self.assembly.trajectory(b).body().shape);
         let opened =
             self.assembly.settings().tolerances.target_gap + self.assembly.settings().tolerances.accuracy;
-        let is_closed = |rule: &FeatureRule| {
-            let [feature_a, feature_b] = rule.features;
+        let is_closed = |[feature_a, feature_b]: [FeatureId; 2], mode: Mode| {
             let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
             let sample = GapSample::measure_unbounded(features[0], &pose_a, features[1], &pose_b);
-            rule.target.is_none() || sample.is_some_and(|sample| sample.gap < opened)
+            !matches!(mode, Mode::Open(_)) || sample.is_some_and(|sample| sample.gap < opened)
         };
-        self.pairs.change_rules(pair, |rules| rules.retain(is_closed));
+        self.pairs.retain_modes(pair, is_closed);
     }
 
     /// Searches for a contact of two bodies in the given span [s] from a time on.

@@ -77,7 +77,7 @@ mod tests {
     fn a_pair_that_fires_for_the_first_time_bounces() {
         let (mut rooms, pair, features) = meeting();
         // The start has seen the pair at its target: a moment later it has been elsewhere.
-        rooms.pairs.seen_mut(pair).clear();
+        rooms.pairs.forget_seen_of(BodyId(0));
         rooms.books.begin_event(rooms.assembly.now());
         handle_contact(&mut rooms, pair, features).expect("one row");
         assert!(rooms.books.told().has_hit());
