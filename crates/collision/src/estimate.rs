@@ -2,7 +2,7 @@
 
 use crate::quadratic::first_closing_time;
 
-/// State of a collision at one of the two moments that an estimate needs.
+/// State of a gap at a moment: that of its first detection, or one of the two that an estimate needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatePoint {
     /// Time [s].
@@ -11,6 +11,15 @@ pub struct EstimatePoint {
     pub distance: f64,
     /// Normal velocity [m/s], negative when closing.
     pub normal_velocity: f64,
+}
+
+impl EstimatePoint {
+    /// The constant acceleration [m/s^2] by which this state comes to the velocity of a later one.
+    #[must_use]
+    #[inline]
+    pub fn acceleration_to(&self, later: &EstimatePoint) -> f64 {
+        (later.normal_velocity - self.normal_velocity) / (later.time - self.time)
+    }
 }
 
 /// Estimates the time [s] at which the distance reaches `target_gap` [m], between `earlier`, the state after the
@@ -26,7 +35,7 @@ pub fn estimate_target_time(earlier: EstimatePoint, later: EstimatePoint, target
     if span <= 0.0 {
         return None;
     }
-    let acceleration = (later.normal_velocity - earlier.normal_velocity) / span;
+    let acceleration = earlier.acceleration_to(&later);
     let wait = first_closing_time(earlier.distance - target_gap, earlier.normal_velocity, acceleration)?;
     (wait <= span).then_some(earlier.time + wait)
 }

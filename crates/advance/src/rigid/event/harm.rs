@@ -78,10 +78,10 @@ fn harm_done(assembly: &Assembly, EventWork { region, settling, .. }: &EventWork
     let is_stopped = opening > HASTY_SHARE * assembly.rest_speed();
     let mut harm = [false; 2];
     if is_moved || is_stopped {
-        for (touch, &(gap_before, rate_before)) in region.touches().iter().zip(region.motions()) {
-            let (gap, rate) = gap_at(assembly, *touch, assembly.now());
-            harm[0] |= is_moved && gap < gap_before - assembly.settings().tolerances.accuracy;
-            harm[1] |= is_stopped && rate < rate_before.min(0.0) - opening;
+        for (touch, before) in region.touches().iter().zip(region.motions()) {
+            let gap = gap_at(assembly, *touch, assembly.now());
+            harm[0] |= is_moved && gap.is_sunk_below(before.distance - gap.tolerances.accuracy);
+            harm[1] |= is_stopped && gap.normal_velocity < before.normal_velocity.min(0.0) - opening;
         }
     }
     harm

@@ -21,7 +21,7 @@ use crate::rigid::held::jammed::is_jammed;
 use crate::rigid::held::passing::let_pass;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::held::sparing::{spare_nearly_redundant, spare_redundant};
-use crate::rigid::impact::jams::{SMALL_CONTRADICTION, is_close};
+use crate::rigid::impact::jams::SMALL_CONTRADICTION;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
@@ -69,8 +69,7 @@ pub(crate) fn settle(
     let share = if region.is_hasty() { HASTY_SHARE } else { 1.0 };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
-        let is_slow = (-rest..=share * rest).contains(&record.motion.normal_velocity);
-        record.parties.bilateral || (holds(view.assembly, record) && is_slow)
+        holds(view.assembly, record) && record.is_contact(-rest..=share * rest)
     };
     let records = || region.records().iter().enumerate();
     settling.candidates.extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
@@ -226,7 +225,7 @@ pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
 /// with little room touches at most one of them.
 fn drop_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
     let Settling { candidates, dropped, .. } = settling;
-    let may_stay = |index: &usize| is_close(assembly, &region.records()[*index]);
+    let may_stay = |index: &usize| region.records()[*index].gap_state().is_at_target(assembly.sink());
     dropped.clear();
     dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
     candidates.retain(may_stay);

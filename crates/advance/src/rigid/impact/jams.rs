@@ -20,13 +20,16 @@ pub(crate) const JAM: f64 = 100.0;
 /// Leaves out of a region the contacts farther apart than the gap at which bodies fire, if the impulses of contacts
 /// jam; true if there are any.
 pub(crate) fn leave_out_jammed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> bool {
-    if region.records().iter().all(|record| is_close(assembly, record)) || !jams(assembly, region, impact) {
+    // The contact that fired takes part, though cutting the steps may have moved it.
+    let may_be_left_out =
+        |record: &Collision| !record.must_handle && !record.gap_state().is_at_target(assembly.sink());
+    if !region.records().iter().any(may_be_left_out) || !jams(assembly, region, impact) {
         return false;
     }
     if !assembly.remedies().act(Remedy::JammedImpulses) {
         return false;
     }
-    region.leave_out(|record| !is_close(assembly, record));
+    region.leave_out(may_be_left_out);
     true
 }
 
@@ -49,11 +52,6 @@ pub(crate) fn find_impulses_of_pressed(
             return Ok(());
         }
     }
-}
-
-/// True if a record is bilateral, or no farther apart than the gap at which bodies fire.
-pub(crate) fn is_close(assembly: &Assembly, record: &Collision) -> bool {
-    record.parties.bilateral || record.distance_to_target() <= assembly.sink()
 }
 
 /// True if the impulses of contacts jam: they cancel each other by far.

@@ -6,7 +6,7 @@ use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Collision, Detector, Moving};
+use halfgap_collision::{BodyId, Collision, Detector, GapState, Moving};
 use halfgap_geometry::GapSample;
 
 /// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
@@ -46,18 +46,18 @@ pub(crate) fn remeasure(assembly: &Assembly, connectors: &Connectors, region: &m
     }
 }
 
-/// Gap [m] and rate [m/s] at a time of the contact, rope or stop that fires an event; `None` for other causes.
+/// Gap at a time of the contact, rope or stop that fires an event; `None` for other causes.
 pub(crate) fn gap_of_cause(
     assembly: &Assembly,
     connectors: &Connectors,
     cause: Cause,
     time: Time,
-) -> Option<(f64, f64)> {
+) -> Option<GapState> {
     match cause {
         Cause::Fired(touch) => Some(gap_at(assembly, touch, time)),
         Cause::Taut(id) => {
             let sample = connectors.measure_connector(assembly, id, 0, time);
-            Some((sample.gap, sample.kinematics.rate))
+            Some(GapState::of_rope(&sample, &assembly.settings().tolerances))
         }
         _ => None,
     }
