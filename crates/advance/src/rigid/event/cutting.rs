@@ -19,7 +19,7 @@ use crate::rigid::group::groups::{Groups, put_group, with_group};
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::region::cause::Cause;
-use crate::rigid::region::records::gap_of_cause;
+use crate::rigid::region::records::{gap_of_cause, seen_gap_of_cause};
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
@@ -55,7 +55,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
         .for_each(|&leader| note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader));
     let seen = rooms.assembly.now();
     measure_touches(&rooms.assembly, region);
-    let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause(), seen).map(|gap| gap.distance);
+    let gap = seen_gap_of_cause(&rooms.assembly, &rooms.connectors, region, seen);
     let time = cut_exactly(rooms, region, gap);
     if is_off(&rooms.view(), region, gap, time) && rooms.assembly.remedies().act(Remedy::CutByDense) {
         place_groups(rooms, region, seen, CutBy::Dense);

@@ -3,6 +3,7 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::gaps::gap_at;
+use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::time::Time;
@@ -60,5 +61,23 @@ pub(crate) fn gap_of_cause(
             Some(GapState::of_rope(&sample, &assembly.settings().tolerances))
         }
         _ => None,
+    }
+}
+
+/// Gap [m] at which the search saw the contact, rope or stop that fires an event, whose region was collected at a time:
+/// that of the first detection in the record of the contact. It is measured where a record of the same place stands for
+/// that one.
+pub(crate) fn seen_gap_of_cause(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    time: Time,
+) -> Option<f64> {
+    let fired = region.cause.fired();
+    let mut records = region.records.iter();
+    let record = records.find(|record| fired.is_some() && Touch::of(record) == fired);
+    match record {
+        Some(record) => Some(record.detection().distance),
+        None => gap_of_cause(assembly, connectors, region.cause, time).map(|gap| gap.distance),
     }
 }
