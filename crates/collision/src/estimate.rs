@@ -13,15 +13,6 @@ pub struct EstimatePoint {
     pub normal_velocity: f64,
 }
 
-impl EstimatePoint {
-    /// The constant acceleration [m/s^2] by which this state comes to the velocity of a later one.
-    #[must_use]
-    #[inline]
-    pub fn acceleration_to(&self, later: &EstimatePoint) -> f64 {
-        (later.normal_velocity - self.normal_velocity) / (later.time - self.time)
-    }
-}
-
 /// Estimates the time [s] at which the distance reaches `target_gap` [m], between `earlier`, the state after the
 /// back-up, and `later`, the state at which the collision was detected, with the acceleration that the two velocities
 /// imply.
@@ -35,7 +26,7 @@ pub fn estimate_target_time(earlier: EstimatePoint, later: EstimatePoint, target
     if span <= 0.0 {
         return None;
     }
-    let acceleration = earlier.acceleration_to(&later);
+    let acceleration = (later.normal_velocity - earlier.normal_velocity) / span;
     let wait = first_closing_time(earlier.distance - target_gap, earlier.normal_velocity, acceleration)?;
     (wait <= span).then_some(earlier.time + wait)
 }

@@ -34,11 +34,12 @@
 //! # Code map
 //!
 //! `motion` and `flight` describe the motion of a body during an interval, `body` its shape and inertia. `record` is
-//! the collision record, with its `tolerances`, its `zone`, the predicates of its `gap_state` and its time `estimate`; `kinematics` gives the
-//! gap's rate, Jacobian and acceleration term. `detect` finds the records of two bodies at one moment and `merge` drops
-//! doubles. `first_contact` finds the time at which two moving bodies first close to their target gap: by `closed`
-//! forms (roots of a `quadratic`) where motions are polynomial, by the `march` along second-order bounds otherwise.
-//! `connector` ties bodies by rows that are gaps too. `broad` finds the bodies whose boxes overlap.
+//! the collision record, with its `tolerances` and its `zone`; `gap_state` holds the predicates by which an advance
+//! decides, `estimate` the first guess of the time of an event; `kinematics` gives the gap's rate, Jacobian and
+//! acceleration term. `detect` finds the records of two bodies at one moment and `merge` drops doubles. `first_contact`
+//! finds the time at which two moving bodies first close to their target gap: by `closed` forms (roots of a `quadratic`)
+//! where motions are polynomial, by the `march` along second-order bounds otherwise. `connector` ties bodies by rows
+//! that are gaps too. `broad` finds the bodies whose boxes overlap.
 
 #![forbid(unsafe_code)]
 
