@@ -2,7 +2,7 @@
 
 use crate::quadratic::first_closing_time;
 
-/// State of a collision at one of the two moments that an estimate needs.
+/// State of a gap at a moment: that of its first detection, or one of the two that an estimate needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatePoint {
     /// Time [s].

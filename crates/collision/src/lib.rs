@@ -34,11 +34,12 @@
 //! # Code map
 //!
 //! `motion` and `flight` describe the motion of a body during an interval, `body` its shape and inertia. `record` is
-//! the collision record, with its `tolerances`, its `zone` predicates and its time `estimate`; `kinematics` gives the
-//! gap's rate, Jacobian and acceleration term. `detect` finds the records of two bodies at one moment and `merge` drops
-//! doubles. `first_contact` finds the time at which two moving bodies first close to their target gap: by `closed`
-//! forms (roots of a `quadratic`) where motions are polynomial, by the `march` along second-order bounds otherwise.
-//! `connector` ties bodies by rows that are gaps too. `broad` finds the bodies whose boxes overlap.
+//! the collision record, with its `tolerances` and its `zone`; `gap_state` holds the predicates by which an advance
+//! decides, `estimate` the first guess of the time of an event; `kinematics` gives the gap's rate, Jacobian and
+//! acceleration term. `detect` finds the records of two bodies at one moment and `merge` drops doubles. `first_contact`
+//! finds the time at which two moving bodies first close to their target gap: by `closed` forms (roots of a `quadratic`)
+//! where motions are polynomial, by the `march` along second-order bounds otherwise. `connector` ties bodies by rows
+//! that are gaps too. `broad` finds the bodies whose boxes overlap.
 
 #![forbid(unsafe_code)]
 
@@ -50,6 +51,7 @@ mod detect;
 mod estimate;
 mod first_contact;
 mod flight;
+mod gap_state;
 mod kinematics;
 mod march;
 mod merge;
@@ -74,14 +76,12 @@ pub use first_contact::{
     search_step,
 };
 pub use flight::Flight;
+pub use gap_state::GapState;
 pub use halfgap_geometry as geometry;
 pub use kinematics::{Arms, BodyAcceleration, GapKinematics};
 pub use merge::{is_same_collision, merge_collisions};
 pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
 pub use quadratic::first_closing_time;
-pub use record::{
-    Collision, CollisionError, ContactGeometry, ContactMotion, Detection, Detector, Participant, Parties,
-    Response, Site,
-};
+pub use record::{Collision, ContactGeometry, ContactMotion, Detector, Participant, Parties, Response, Site};
 pub use tolerances::Tolerances;
 pub use zone::Zone;

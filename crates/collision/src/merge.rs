@@ -72,7 +72,7 @@ fn lean(a: &Collision, b: &Collision) -> f64 {
 
 /// Drops records of the same physical collision as a more exact one ([`is_same_collision`]): the one within its edges
 /// wins, then edge-edge over vertex-edge over corner-corner, then the lesser distance, then the earlier place in the
-/// list. Keeps the order.
+/// list. Keeps the order. What must be handled still must be, by whichever record.
 pub fn merge_collisions(records: &mut Vec<Collision>) {
     let mut kept = 0;
     for index in 0..records.len() {
@@ -82,8 +82,13 @@ pub fn merge_collisions(records: &mut Vec<Collision>) {
                 records[kept] = candidate;
                 kept += 1;
             }
-            Some(place) if is_better(&candidate, &records[place]) => records[place] = candidate,
-            Some(_) => {}
+            Some(place) => {
+                let must_handle = records[place].must_handle || candidate.must_handle;
+                if is_better(&candidate, &records[place]) {
+                    records[place] = candidate;
+                }
+                records[place].must_handle = must_handle;
+            }
         }
     }
     records.truncate(kept);

@@ -1,17 +1,23 @@
 //! The collision record: all data of one place where two bodies touch or are about to.
 //!
-//! It also serves callers that use this crate alone, to write an advance of their own. It therefore holds data that the
-//! layers above find in other ways, or do not need: the first detection with the estimate that follows from it,
-//! `must_handle` and `updated`, curvature, arms, most predicates of `zone`.
+//! It is what an advance decides by. The predicates are those of its [`GapState`], which two features or a rope have as
+//! well without a record; the record adds what a gap alone cannot tell: where and when it was found, and whether it must
+//! be handled although its gap is open again.
+//!
+//! *Invariant*: geometry and motion are those at the time `updated`, the detection is that of the first moment, and
+//! `must_handle` once true stays true.
 
 use crate::body::BodyId;
 use crate::connector::{Connector, ConnectorId, ConnectorSample};
-use crate::estimate::{EstimatePoint, estimate_target_time};
+use crate::estimate::EstimatePoint;
+use crate::gap_state::GapState;
 use crate::kinematics::{Arms, GapKinematics};
 use crate::motion::Moving;
 use crate::tolerances::Tolerances;
+use crate::zone::Zone;
 use glam::DVec2;
 use halfgap_geometry::{FeatureId, FeatureKind, GapSample, Shape};
+use std::ops::RangeInclusive;
 
 /// Origin of a collision record: the kinds of the two features, or a row of a connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -147,17 +153,6 @@ pub struct ContactMotion {
     pub kinematics: GapKinematics,
 }
 
-/// State of a collision when it was first detected, before the back-up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Detection {
-    /// Time [s].
-    pub time: f64,
-    /// Distance [m], negative for penetration.
-    pub distance: f64,
-    /// Normal velocity [m/s], negative when closing.
-    pub normal_velocity: f64,
-}
-
 /// Response to a collision: restitution, impulse and force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response {
@@ -167,22 +162,6 @@ pub struct Response {
     pub impulse: Option<f64>,
     /// Contact force [N] on the primary body along the normal; `None` until a caller sets it.
     pub force: Option<f64>,
-}
-
-/// Misuse of a collision record.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CollisionError {
-    /// The first detection was noted a second time.
-    #[error("the collision of bodies {primary} and {normal} was already detected at {time} s")]
-    AlreadyDetected {
-        /// Index of the primary body.
-        primary: u32,
-        /// Index of the normal body.
-        normal: u32,
-        /// Time of the first detection [s].
-        time: f64,
-    },
 }
 
 /// Record of one place where two bodies touch or are about to. Absent values are `None`.
@@ -198,12 +177,12 @@ pub struct Collision {
     pub tolerances: Tolerances,
     /// Restitution, impulse and force.
     pub response: Response,
-    /// True if the collision must be handled: it was found penetrating before the back-up, or a caller set this.
+    /// True if the collision must be handled, however far apart its bodies are by now: it was found penetrating before the
+    /// back-up, or a caller set this, as for the contact that caused an event, or a rope that is held.
     pub must_handle: bool,
     /// Time [s] of the last update of geometry and motion.
     pub updated: f64,
-    detection: Option<Detection>,
-    estimate: Option<f64>,
+    detection: EstimatePoint,
 }
 
 impl Collision {
@@ -259,6 +238,8 @@ impl Collision {
         elasticity: f64,
         time: f64,
     ) -> Self {
+        let detection =
+            EstimatePoint { time, distance: geometry.distance, normal_velocity: motion.normal_velocity };
         let mut record = Self {
             parties,
             geometry,
@@ -267,10 +248,9 @@ impl Collision {
             response: Response { elasticity, ..Response::default() },
             must_handle: false,
             updated: time,
-            detection: None,
-            estimate: None,
+            detection,
         };
-        record.must_handle = record.is_illegal();
+        record.must_handle = record.gap_state().is_illegal(0.0);
         record
     }
 
@@ -281,40 +261,47 @@ impl Collision {
         self.geometry.distance - self.tolerances.target_gap
     }
 
-    /// State at first detection, if it has been noted.
+    /// The distance and its rate, as the predicates take them.
     #[must_use]
     #[inline]
-    pub fn detection(&self) -> Option<&Detection> {
-        self.detection.as_ref()
-    }
-
-    /// Time [s] at which the distance reaches the target gap, as the last update estimated it; `None` without a noted
-    /// detection, or if the target is not reached by the estimate.
-    #[must_use]
-    #[inline]
-    pub fn estimate(&self) -> Option<f64> {
-        self.estimate
-    }
-
-    /// Stores the record's present state as that of its first detection.
-    ///
-    /// # Errors
-    /// If a detection was noted before, which then stays.
-    pub fn note_detection(&mut self) -> Result<(), CollisionError> {
-        if let Some(detection) = self.detection {
-            let [BodyId(primary), BodyId(normal)] = self.bodies();
-            return Err(CollisionError::AlreadyDetected { primary, normal, time: detection.time });
-        }
-        self.detection = Some(Detection {
-            time: self.updated,
+    pub fn gap_state(&self) -> GapState {
+        GapState {
             distance: self.geometry.distance,
             normal_velocity: self.motion.normal_velocity,
-        });
-        Ok(())
+            bilateral: self.parties.bilateral,
+            tolerances: self.tolerances,
+        }
+    }
+
+    /// True for a contact or a connector's row that may be held: one by its gap ([`GapState::is_contact`]), or one that
+    /// must be handled, at whatever gap, if its rate is in `rates` [m/s].
+    #[must_use]
+    #[inline]
+    pub fn is_contact(&self, rates: RangeInclusive<f64>) -> bool {
+        (self.must_handle && rates.contains(&self.motion.normal_velocity))
+            || self.gap_state().is_contact(rates)
+    }
+
+    /// True if the record may be handled now: it must be, or it is at its target but for the distance `above` [m], or it
+    /// closes faster than `rest` [m/s] in the target zone or nearer.
+    ///
+    /// A gap in the upper half of the zone that rests or opens has room left, and is handled when it closes.
+    #[must_use]
+    #[inline]
+    pub fn is_close_enough(&self, above: f64, rest: f64) -> bool {
+        let gap = self.gap_state();
+        self.must_handle || gap.is_at_target(above) || (gap.zone() >= Zone::Target && gap.closes(rest))
+    }
+
+    /// The state in which the collision was first found, before the back-up.
+    #[must_use]
+    #[inline]
+    pub fn detection(&self) -> &EstimatePoint {
+        &self.detection
     }
 
     /// Updates geometry and motion to another time [s] (an earlier one after a back-up), from a gap and radii as in
-    /// [`Collision::new`], and estimates anew the time at which the distance reaches the target gap.
+    /// [`Collision::new`].
     ///
     /// `must_handle`, once true, stays true: the collision happened, even though the bodies are apart again.
     #[inline]
@@ -337,20 +324,7 @@ impl Collision {
     fn update_parts(&mut self, (geometry, motion): (ContactGeometry, ContactMotion), time: f64) {
         (self.geometry, self.motion) = (geometry, motion);
         self.updated = time;
-        self.must_handle |= self.is_illegal();
-        self.estimate = self.detection.and_then(|seen| {
-            let later = EstimatePoint {
-                time: seen.time,
-                distance: seen.distance,
-                normal_velocity: seen.normal_velocity,
-            };
-            let earlier = EstimatePoint {
-                time,
-                distance: self.geometry.distance,
-                normal_velocity: self.motion.normal_velocity,
-            };
-            estimate_target_time(earlier, later, self.tolerances.target_gap)
-        });
+        self.must_handle |= self.gap_state().is_illegal(0.0);
     }
 
     /// Ids of the primary and of the normal body.
@@ -365,28 +339,6 @@ impl Collision {
     #[inline]
     pub fn involves_body(&self, body: BodyId) -> bool {
         self.bodies().contains(&body)
-    }
-
-    /// True if the given edge of the body takes part.
-    #[must_use]
-    #[inline]
-    pub fn involves_edge(&self, body: BodyId, path: u32, edge: u32) -> bool {
-        self.involves(body, path, edge, |kind| kind != FeatureKind::Vertex)
-    }
-
-    /// True if the vertex of the body at which the given edge starts takes part.
-    #[must_use]
-    #[inline]
-    pub fn involves_vertex(&self, body: BodyId, path: u32, edge: u32) -> bool {
-        self.involves(body, path, edge, |kind| kind == FeatureKind::Vertex)
-    }
-
-    fn involves(&self, body: BodyId, path: u32, edge: u32, of_kind: impl Fn(FeatureKind) -> bool) -> bool {
-        [self.parties.primary, self.parties.normal]
-            .iter()
-            .filter(|side| side.body == body)
-            .filter_map(|side| side.site)
-            .any(|site| site.path == path && site.edge == edge && of_kind(site.kind))
     }
 }
 

@@ -1,6 +1,5 @@
-//! Zones of distance around the target gap, and the predicates built on them.
+//! Zones of distance around the target gap; the predicates built on them are in `gap_state`.
 
-use crate::record::Collision;
 use crate::tolerances::Tolerances;
 
 /// Zone of a distance relative to the target gap, from far to overlapping.
@@ -35,61 +34,6 @@ impl Zone {
         } else {
             Zone::OutOfRange
         }
-    }
-}
-
-/// Predicates on a record, which follow from its zone, its normal velocity, and whether it is bilateral.
-impl Collision {
-    /// The zone of the record's distance.
-    #[must_use]
-    #[inline]
-    pub fn zone(&self) -> Zone {
-        Zone::of(self.geometry.distance, &self.tolerances)
-    }
-
-    /// True for a contact: in range, not overlapping and slower than `velocity_tol`, or bilateral.
-    #[must_use]
-    #[inline]
-    pub fn is_contact(&self) -> bool {
-        let in_range = matches!(self.zone(), Zone::BeyondTarget | Zone::Target | Zone::Near);
-        self.parties.bilateral
-            || (in_range && self.motion.normal_velocity.abs() < self.tolerances.velocity_tol)
-    }
-
-    /// True within `distance_tol`, or if bilateral.
-    #[must_use]
-    #[inline]
-    pub fn is_touching(&self) -> bool {
-        self.parties.bilateral || self.zone() != Zone::OutOfRange
-    }
-
-    /// True if the record may be handled now: a contact, or in the target zone. `allow_tiny` also admits distances
-    /// nearer than the target zone.
-    #[must_use]
-    #[inline]
-    pub fn is_close_enough(&self, allow_tiny: bool) -> bool {
-        let zone = self.zone();
-        self.is_contact() || zone == Zone::Target || (allow_tiny && zone == Zone::Near)
-    }
-
-    /// True if overlapping, or nearer than the target zone and closing by more than `velocity_tol`; never if bilateral.
-    #[must_use]
-    #[inline]
-    pub fn is_colliding(&self) -> bool {
-        let closing = self.motion.normal_velocity < -self.tolerances.velocity_tol;
-        !self.parties.bilateral
-            && match self.zone() {
-                Zone::Penetrating => true,
-                Zone::Near => closing,
-                Zone::OutOfRange | Zone::BeyondTarget | Zone::Target => false,
-            }
-    }
-
-    /// True if overlapping and not bilateral.
-    #[must_use]
-    #[inline]
-    pub fn is_illegal(&self) -> bool {
-        !self.parties.bilateral && self.zone() == Zone::Penetrating
     }
 }
 

@@ -1,9 +1,9 @@
-//! Collision records: detection, merging, zones, detection notes, updates, tight fits.
+//! Collision records: detection, merging, zones, first detection, updates, tight fits.
 
 use glam::DVec2;
 use halfgap_collision::{
-    Body, BodyId, BodyState, Collision, CollisionError, Detector, Flight, Moment, Motion, Moving, Tolerances,
-    Zone, detect_pair,
+    Body, BodyId, BodyState, Collision, Detector, EstimatePoint, Flight, Moment, Motion, Moving, Tolerances,
+    Zone, detect_pair, estimate_target_time,
 };
 use halfgap_geometry::{GapSample, Shape};
 
@@ -49,7 +49,7 @@ fn over(gap: f64, rate: f64) -> Option<Collision> {
 
 #[test]
 fn predicates_change_at_the_borders_of_the_zones() {
-    let zone = |gap: f64| over(gap, 0.0).map(|record| record.zone());
+    let zone = |gap: f64| over(gap, 0.0).map(|record| record.gap_state().zone());
     assert_eq!(zone(2.001e-3), None);
     assert_eq!(zone(1.999e-3), Some(Zone::BeyondTarget));
     assert_eq!(zone(1.599e-3), Some(Zone::Target));
@@ -58,45 +58,36 @@ fn predicates_change_at_the_borders_of_the_zones() {
     assert_eq!(zone(-1e-6), Some(Zone::Penetrating));
 
     let record = |gap: f64, rate: f64| over(gap, rate).expect("in range");
-    // (gap, rate): contact, close enough, close enough with tiny ones, colliding, illegal.
+    const REST: f64 = 1e-3;
+    // (gap, rate): contact, close enough, colliding, illegal.
     let says = |gap: f64, rate: f64| {
         let found = record(gap, rate);
-        assert!(found.is_touching());
+        let state = found.gap_state();
+        assert!(state.is_touching());
         [
-            found.is_contact(),
-            found.is_close_enough(false),
-            found.is_close_enough(true),
-            found.is_colliding(),
-            found.is_illegal(),
+            found.is_contact(-REST..=REST),
+            found.is_close_enough(0.0, REST),
+            state.is_colliding(REST),
+            state.is_illegal(0.0),
         ]
     };
-    assert_eq!(says(1.8e-3, -0.02), [false, false, false, false, false]);
-    assert_eq!(says(1.8e-3, -0.009), [true, true, true, false, false]);
-    assert_eq!(says(1.0e-3, -0.02), [false, true, true, false, false]);
-    assert_eq!(says(0.2e-3, -0.02), [false, false, true, true, false]);
-    assert_eq!(says(0.2e-3, 0.02), [false, false, true, false, false]);
-    assert_eq!(says(0.2e-3, 0.009), [true, true, true, false, false]);
-    assert_eq!(says(-0.2e-3, 0.02), [false, false, false, true, true]);
-    // A bilateral row is always a contact, and never collides.
-    let mut joint = record(-0.2e-3, -5.0);
-    joint.parties.bilateral = true;
-    assert!(joint.is_contact() && joint.is_touching() && !joint.is_colliding() && !joint.is_illegal());
+    assert_eq!(says(1.8e-3, -0.02), [false, false, true, false]);
+    assert_eq!(says(1.8e-3, -0.5e-3), [true, false, false, false]);
+    assert_eq!(says(1.5e-3, -0.02), [false, true, true, false]);
+    assert_eq!(says(1.5e-3, 0.5e-3), [true, false, false, false]);
+    assert_eq!(says(0.2e-3, -0.02), [false, true, true, false]);
+    assert_eq!(says(0.2e-3, 0.02), [false, true, false, false]);
+    assert_eq!(says(0.2e-3, 0.5e-3), [true, true, false, false]);
+    assert_eq!(says(-0.2e-3, 0.02), [false, true, false, true]);
+    // What must be handled is close enough, wherever it is.
+    let apart = Collision { must_handle: true, ..record(1.8e-3, 0.02) };
+    assert!(apart.is_close_enough(0.0, REST) && !apart.is_contact(-REST..=REST));
+    let away = Collision { must_handle: true, ..over(3e-3, 0.0).unwrap_or(record(1.8e-3, 0.0)) };
+    assert!(away.is_contact(-REST..=REST));
 }
 
 #[test]
-fn a_detection_is_noted_once() {
-    let mut record = over(1.5e-3, -1.0).expect("in range");
-    assert_eq!(record.detection(), None);
-    record.note_detection().expect("the first note");
-    let seen = *record.detection().expect("it was noted");
-    assert!((seen.distance - 1.5e-3).abs() < 1e-15 && seen.normal_velocity == -1.0 && seen.time == 1.0);
-    let error = record.note_detection().expect_err("the second note");
-    assert_eq!(error, CollisionError::AlreadyDetected { primary: 3, normal: 8, time: 1.0 });
-    assert_eq!(*record.detection().expect("the first stays"), seen);
-}
-
-#[test]
-fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
+fn an_update_after_the_back_up_moves_points_and_arms_and_serves_an_estimate() {
     let (disc, block) = (disc(0.5), block(4.0, 1.0));
     let fall =
         BodyState { position: DVec2::new(0.1, 1.1), velocity: DVec2::new(0.3, -1.0), ..BodyState::default() };
@@ -106,8 +97,8 @@ fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
     let late = 0.09;
     let mut record = detect_to(0.1, (&disc, flight.moving_at(late)), (&block, rest.moving_at(late)))[0];
     record.updated = late;
-    record.note_detection().expect("the first note");
-    assert!(record.is_illegal() && record.must_handle && record.estimate().is_none());
+    assert!(record.gap_state().is_illegal(0.0) && record.must_handle);
+    assert_eq!(record.detection().distance, record.geometry.distance);
     let before = record;
 
     let early = 0.05;
@@ -118,7 +109,7 @@ fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
     let sample = GapSample::measure(round, &moments[0].pose, line, &moments[1].pose).expect("disc over line");
     record.update((&sample, [round.radius(), line.radius()]), [&moments[0], &moments[1]], early);
     assert!(record.must_handle, "it happened, even though the bodies are apart again");
-    assert!(!record.is_illegal() && record.updated == early);
+    assert!(!record.gap_state().is_illegal(0.0) && record.updated == early);
     assert_eq!(record.detection(), before.detection());
     let moved = record.geometry.point_primary - before.geometry.point_primary;
     assert!((moved - (moments[0].pose.position - flight.moving_at(late).pose.position)).length() < 1e-15);
@@ -126,7 +117,13 @@ fn an_update_after_the_back_up_moves_points_and_arms_and_estimates_the_time() {
     assert!((record.geometry.arms.normal.x - (0.1 + 0.3 * early)).abs() < 1e-15);
     // The estimate assumes free fall: y = 1.1 - t - 5 t^2 meets 1 + target.
     let exact = (-1.0 + (1.0f64 + 20.0 * (0.1 - TOLERANCES.target_gap)).sqrt()) / 10.0;
-    assert!((record.estimate().expect("it closes in between") - exact).abs() < 1e-12);
+    let state = |record: &Collision, time: f64| EstimatePoint {
+        time,
+        distance: record.geometry.distance,
+        normal_velocity: record.motion.normal_velocity,
+    };
+    let estimate = estimate_target_time(state(&record, early), state(&before, late), TOLERANCES.target_gap);
+    assert!((estimate.expect("it closes in between") - exact).abs() < 1e-12);
 }
 
 #[test]
@@ -226,7 +223,7 @@ fn a_tight_fit_has_its_own_thresholds() {
     assert!((tight.target_gap - clearance / 4.0).abs() < 1e-15);
     assert!((tight.accuracy / tight.target_gap - TOLERANCES.accuracy / TOLERANCES.target_gap).abs() < 1e-12);
     assert_eq!(tight.velocity_tol, TOLERANCES.velocity_tol);
-    assert_eq!(found[0].zone(), Zone::BeyondTarget);
+    assert_eq!(found[0].gap_state().zone(), Zone::BeyondTarget);
     assert_eq!(TOLERANCES.for_clearance(4.0 * TOLERANCES.target_gap), TOLERANCES);
 }
 
@@ -239,9 +236,7 @@ fn records_name_their_parties() {
             && record.involves_body(BodyId(8))
             && !record.involves_body(BodyId(0))
     );
-    assert!(record.involves_edge(BodyId(8), site.path, site.edge));
-    assert!(!record.involves_edge(BodyId(8), site.path, site.edge + 1));
-    assert!(!record.involves_vertex(BodyId(8), site.path, site.edge));
+    assert_eq!(record.parties.normal.feature(), Some(site.feature));
     assert_eq!(record.response.elasticity, 0.5);
     assert!((record.distance_to_target()).abs() < 1e-15);
     assert!((record.motion.lateral_velocity.abs() - 0.2).abs() < 1e-15);

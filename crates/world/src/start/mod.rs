@@ -104,7 +104,7 @@ pub(crate) fn correct_start(
         let pairs = rules.near_pairs(&mut near, bodies);
         let ways = ways(bodies, &given);
         let mut records = touching(bodies, pairs, rules, &ways);
-        records.retain(|record| !tight.keeps(record) || record.geometry.distance < -rules.rounding);
+        records.retain(|record| !tight.keeps(record) || record.gap_state().is_illegal(rules.rounding));
         let (too_near, off) = (lowest_below_zone(&records), worst_connector(bodies, connectors));
         let error = off.map_or(0.0, |off| off.error);
         if rounds.are_at_first() {
@@ -189,7 +189,8 @@ fn widen(
 ) -> bool {
     let pairs = rules.near_pairs(near, bodies);
     let mut records = touching(bodies, pairs, rules, &vec![0.0; bodies.len()]);
-    let is_near = |record: &Collision| is_below_zone(record) && record.geometry.distance >= -rules.rounding;
+    let is_near =
+        |record: &Collision| is_below_zone(record) && !record.gap_state().is_illegal(rules.rounding);
     records.retain(|record| is_near(record) && !tight.keeps(record));
     tight.widen(bodies, connectors, &records)
 }

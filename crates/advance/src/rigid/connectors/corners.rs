@@ -4,7 +4,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::ends::end_rooms;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::settings::RigidSettings;
-use halfgap_collision::{BodyId, Collision, ConnectorId, ConnectorKind};
+use halfgap_collision::{BodyId, Collision, ConnectorId, ConnectorKind, GapState, Zone};
 
 /// Notes which points of rails are in a corner at the start. A moving point is put on the side along which it
 /// moves: if that leads through the corner, the point comes to it at once.
@@ -74,7 +74,7 @@ pub(crate) fn stop_in_corner(
 ) -> Option<ConnectorId> {
     let hint = connectors.states[rail.index()].hint?;
     let moving = connectors.connector(rail).bodies().map(|body| assembly.moving_at(body, assembly.now()));
-    let (accuracy, rest) = (assembly.settings().tolerances.accuracy, assembly.rest_speed());
+    let rest = assembly.rest_speed();
     let mut beside = connectors.of(connectors.connector(rail).bodies()[0]).iter().copied();
     beside.find(|&id| {
         let stop = connectors.connector(id);
@@ -83,14 +83,15 @@ pub(crate) fn stop_in_corner(
         }
         let left = connectors.hint_at(assembly, id, 0, assembly.now()).and_then(|hint| hint.before_stop());
         let sample = stop.measure_near(0, &moving[0], &moving[1], Some(&hint.with_before_stop(left)));
-        sample.kinematics.rate <= rest && sample.gap.abs() <= accuracy
+        let gap = GapState::of_rope(&sample, &assembly.settings().tolerances);
+        gap.zone() == Zone::Target && !gap.opens(rest)
     })
 }
 
 /// True for a side from which the point of a rail parts slowly: the force that presses it into the corner keeps it
 /// there, for rounding of positions produces such speeds again and again.
 pub(crate) fn stays_in_corner(connectors: &Connectors, record: &Collision) -> bool {
-    let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
+    let is_slow = !record.gap_state().opens(record.tolerances.velocity_tol);
     is_slow && record.connector().is_some_and(|id| connectors.states[id.index()].corner.is_some())
 }
 

@@ -5,7 +5,8 @@ use crate::rigid::bodies::by_body::ByBody;
 use crate::rigid::bodies::instant::is_same_time;
 use crate::time::Time;
 use halfgap_collision::{
-    BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, Moving, RailHint, Rope,
+    BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, GapState, Moving, RailHint,
+    Rope,
 };
 
 /// All connectors with their states, and lists of them by body.
@@ -134,9 +135,12 @@ impl Connectors {
         time: Time,
     ) {
         let moving = self.connector(id).bodies().map(|body| assembly.moving_at(body, time));
-        let response = record.response;
-        *record = self.connector_record(assembly, id, row as usize, &moving, time);
-        record.response = response;
+        let hint = self.hint_at(assembly, id, row as usize, time);
+        let sample = self.connector(id).measure_near(row as usize, &moving[0], &moving[1], hint.as_ref());
+        record.update_connector(self.connector(id), &sample, [&moving[0], &moving[1]], time.seconds());
+        // The point of a rail may have come to a corner, or left one.
+        let is_in_corner = self.states[id.index()].corner.is_some();
+        record.parties.bilateral = self.connector(id).is_bilateral() && !is_in_corner;
     }
 
     /// Measures a row of a connector at a time.
@@ -170,8 +174,8 @@ impl Connectors {
 /// Distance [m] by which a unilateral connector may sink from where it was measured before it fires: positive only
 /// where it is touched and does not open.
 pub(crate) fn slack_of(assembly: &Assembly, sample: &ConnectorSample) -> f64 {
-    let touches = sample.gap <= assembly.settings().tolerances.accuracy;
-    let rests = touches && sample.kinematics.rate <= assembly.rest_speed();
+    let gap = GapState::of_rope(sample, &assembly.settings().tolerances);
+    let rests = gap.is_touching() && !gap.opens(assembly.rest_speed());
     if rests { assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 }
 }
 

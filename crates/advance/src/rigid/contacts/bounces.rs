@@ -17,21 +17,21 @@ use crate::rigid::contacts::pairs::{PairId, Pairs};
 use crate::rigid::contacts::table::Seen;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::shares::{HUGE, LARGE, MAJOR};
-use halfgap_collision::{Collision, Tolerances};
+use halfgap_collision::{Collision, GapState, Tolerances};
 use halfgap_geometry::FeatureId;
 
 /// Number of low bounces in a row after which elasticity no longer acts.
 const MOST_LOW: u32 = 1000;
 
-/// Remembers the gaps [m] and rates [m/s] of features that touch, whose bodies have their new velocities. `fired` is the
+/// Remembers the gaps of features that touch, whose bodies have their new velocities. `fired` is the
 /// contact that caused the event, if one did, and whether it fired although it did not close.
 pub(crate) fn note_seen(
     assembly: &Assembly,
     pairs: &mut Pairs,
-    touching: impl Iterator<Item = (Touch, (f64, f64))>,
+    touching: impl Iterator<Item = (Touch, GapState)>,
     fired: Option<(Touch, bool)>,
 ) {
-    for (touch, (gap, rate)) in touching {
+    for (touch, GapState { distance: gap, normal_velocity: rate, .. }) in touching {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
         let before = pairs.seen(pair, touch.features);
         let low = before.map_or(0, |before| low_bounces(assembly, before, gap));
@@ -60,7 +60,7 @@ fn low_bounces(assembly: &Assembly, seen: &Seen, gap: f64) -> u32 {
 /// True if some of the given contacts close fast, and each of these has stayed within the target zone since it was last
 /// seen.
 pub(crate) fn bounces_low(assembly: &Assembly, pairs: &Pairs, records: &[Collision]) -> bool {
-    let mut fast = records.iter().filter(|record| closes_fast(record)).peekable();
+    let mut fast = records.iter().filter(|record| record.gap_state().rebounds()).peekable();
     fast.peek().is_some() && fast.all(|record| is_low_bounce(assembly, pairs, record))
 }
 
@@ -130,9 +130,4 @@ pub(crate) fn has_stayed_low(
 fn is_struck_since(assembly: &Assembly, pairs: &Pairs, pair: PairId, seen: &Seen) -> bool {
     let strikes = pairs.bodies(pair).into_iter().filter_map(|body| assembly.struck()[body.index()]);
     strikes.into_iter().any(|strike| strike > seen.time)
-}
-
-/// True if a contact closes so fast that its elasticity acts.
-pub(crate) fn closes_fast(record: &Collision) -> bool {
-    !record.parties.bilateral && -record.motion.normal_velocity > record.tolerances.velocity_tol
 }

@@ -1,7 +1,6 @@
 //! An event in which held rows change without an impact, unless other contacts close.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::contacts::bounces::closes_fast;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::cutting::cut_groups;
@@ -33,10 +32,12 @@ pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
     // Beside a seam a corner may be as near to the next corner, and pass over it.
     let remedies = rooms.assembly.remedies();
     region.retain_records(|record| {
-        !(closes_fast(record) && passes_by(&rooms.search, record) && remedies.act(Remedy::PassingBy))
+        let may_pass = !record.must_handle && record.gap_state().rebounds();
+        !(may_pass && passes_by(&rooms.search, record) && remedies.act(Remedy::PassingBy))
     });
+    // A joint that closes takes an impact, too.
     let rest = rooms.assembly.rest_speed();
-    if work.region.records().iter().any(|record| record.motion.normal_velocity < -rest) {
+    if work.region.records().iter().any(|record| record.gap_state().closes(rest)) {
         return collide(rooms, work);
     }
     go_on(rooms, work)
@@ -46,6 +47,6 @@ pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
 fn neighbour_closes(assembly: &Assembly, region: &Region) -> bool {
     let Some(run_off) = region.cause().run_off() else { return false };
     let rest = assembly.rest_speed();
-    let mut closing = region.records().iter().filter(|record| record.motion.normal_velocity < -rest);
-    closing.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
+    let mut colliding = region.records().iter().filter(|record| record.gap_state().is_colliding(rest));
+    colliding.any(|record| Touch::of(record).is_some_and(|touch| touch.bodies == run_off.bodies))
 }

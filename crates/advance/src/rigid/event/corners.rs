@@ -80,8 +80,7 @@ pub(crate) fn is_left_alone(
 fn stop_across(rooms: &mut Rooms, work: &mut EventWork, id: ConnectorId) -> Result<(), AdvanceError> {
     let (now, rest) = (rooms.assembly.now(), rooms.assembly.rest_speed());
     let mut records = work.region.records().iter();
-    let moves =
-        |record: &Collision| record.connector() == Some(id) && record.motion.normal_velocity.abs() > rest;
+    let moves = |record: &Collision| record.connector() == Some(id) && !record.gap_state().rests(rest);
     if !records.any(moves) {
         return Ok(());
     }

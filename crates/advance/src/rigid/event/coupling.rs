@@ -83,8 +83,8 @@ fn couple_touching(assembly: &Assembly, coupling: &mut Coupling, region: &Region
         return;
     }
     let rest = assembly.rest_speed();
-    for (&touch, &(_, rate)) in region.touches().iter().zip(region.motions()) {
-        if rate.abs() > rest || settling.holds_touch(touch) {
+    for (&touch, gap) in region.touches().iter().zip(region.motions()) {
+        if !gap.rests(rest) || settling.holds_touch(touch) {
             continue;
         }
         let mut places = touch.bodies.into_iter().filter_map(|body| region.place(body));

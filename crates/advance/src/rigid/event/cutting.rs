@@ -19,14 +19,14 @@ use crate::rigid::group::groups::{Groups, put_group, with_group};
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::region::cause::Cause;
-use crate::rigid::region::records::gap_of_cause;
+use crate::rigid::region::records::{gap_of_cause, seen_gap_of_cause};
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::shares::{HALF_ZONE, MINOR};
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, Zone};
 use halfgap_geometry::Relation;
 
 /// Largest number of corrections of an event's time.
@@ -51,7 +51,7 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
         .for_each(|&leader| note_ways(&rooms.assembly, &mut rooms.connectors, &mut rooms.groups, leader));
     let seen = rooms.assembly.now();
     measure_touches(&rooms.assembly, region);
-    let gap = gap_of_cause(&rooms.assembly, &rooms.connectors, region.cause(), seen).map(|(gap, _)| gap);
+    let gap = seen_gap_of_cause(&rooms.assembly, &rooms.connectors, region, seen);
     let time = cut_exactly(rooms, region, gap);
     if is_off(&rooms.view(), region, gap, time) && rooms.assembly.remedies().act(Remedy::CutByDense) {
         place_groups(rooms, region, seen, CutBy::Dense);
@@ -95,10 +95,10 @@ fn corrected(
     wanted: Option<f64>,
     time: Time,
 ) -> Option<Time> {
-    let (gap, rate) = gap_of_cause(assembly, connectors, cause, time)?;
-    let error = gap - wanted?;
+    let gap = gap_of_cause(assembly, connectors, cause, time)?;
+    let error = gap.distance - wanted?;
     let counts = error.abs() > MINOR * assembly.settings().tolerances.accuracy;
-    (counts && rate < -assembly.settings().tolerances.velocity_tol).then(|| time.plus(-error / rate))
+    (counts && gap.rebounds()).then(|| time.plus(-error / gap.normal_velocity))
 }
 
 /// Time of the earliest contact of a region's bodies that was predicted for before the given time, to which the
@@ -114,13 +114,12 @@ pub(crate) fn passed(
     if time <= assembly.now() {
         return None;
     }
-    let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
     let links = region.bodies().iter().flat_map(|&body| pairs.of_body(body));
     let contacts = links.filter_map(|link| {
         let Prediction::Contact(features) = pairs.get(link.pair).prediction() else { return None };
         let predicted = agenda.time_of(Source::Pair(link.pair))?;
         let bodies = pairs.bodies(link.pair);
-        let has_sunk = || gap_at(assembly, Touch { bodies, features }, time).0 < least;
+        let has_sunk = || gap_at(assembly, Touch { bodies, features }, time).zone() > Zone::Target;
         (predicted < time && has_sunk()).then_some(predicted)
     });
     contacts.min().filter(|_| assembly.remedies().act(Remedy::Passed))
@@ -131,12 +130,13 @@ pub(crate) fn passed(
 fn is_off(view: &View<'_>, region: &Region, gap: Option<f64>, time: Time) -> bool {
     let allowed = HALF_ZONE * view.assembly.settings().tolerances.accuracy;
     let fired = gap_of_cause(view.assembly, view.connectors, region.cause(), time).zip(gap);
-    if fired.is_some_and(|((gap, _), seen)| (gap - seen).abs() > allowed) {
+    if fired.is_some_and(|(gap, seen)| (gap.distance - seen).abs() > allowed) {
         return true;
     }
     let mut seen = region.touches().iter().zip(region.motions());
-    let moves_touches = seen.any(|(&touch, &(gap, _))| {
-        time == view.assembly.now() && (gap_at(view.assembly, touch, time).0 - gap).abs() > allowed
+    let moves_touches = seen.any(|(&touch, seen)| {
+        let way = || gap_at(view.assembly, touch, time).distance - seen.distance;
+        time == view.assembly.now() && way().abs() > allowed
     });
     moves_touches
         || strayed(view.assembly, view.groups, region, time)

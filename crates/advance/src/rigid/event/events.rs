@@ -2,7 +2,6 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::corners::{go_along, note_corners};
-use crate::rigid::contacts::bounces::closes_fast;
 use crate::rigid::contacts::gaps::leaves;
 use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::rows::RowSource;
@@ -23,7 +22,7 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::touching::Region;
 use crate::rigid::zeno::repeats::{CALM_REPEATS, note_repeat};
-use halfgap_collision::{BodyId, Collision, ConnectorId, Zone};
+use halfgap_collision::{BodyId, Collision, ConnectorId, GapState, Zone};
 use halfgap_geometry::FeatureId;
 
 /// Finds the rows that are held at the start.
@@ -37,8 +36,8 @@ pub(crate) fn establish(rooms: &mut Rooms) -> Result<(), AdvanceError> {
             return go_on(rooms, work);
         }
         // Contacts that close fast fire in their own time, unless they are in their target zone now.
-        let fast = |record: &Collision| closes_fast(record) && record.zone() < Zone::Target;
-        work.region.retain_records(|record| !fast(record));
+        let fast = |gap: GapState| gap.rebounds() && gap.zone() < Zone::Target;
+        work.region.retain_records(|record| !fast(record.gap_state()));
         collide(rooms, work)
     })
 }
@@ -46,10 +45,10 @@ pub(crate) fn establish(rooms: &mut Rooms) -> Result<(), AdvanceError> {
 /// True if any contact of a region closes so slowly that it is to be captured, but is not at rest yet.
 fn closes_slowly(assembly: &Assembly, region: &Region) -> bool {
     let closes = |record: &Collision| {
-        record.motion.normal_velocity < -assembly.start_rest_of(record) && !closes_fast(record)
+        let gap = record.gap_state();
+        gap.is_colliding(assembly.start_rest_of(record)) && !gap.rebounds()
     };
-    let mut records = region.records().iter().filter(|record| !record.parties.bilateral);
-    assembly.settings().impulse_step.is_none() && records.any(closes)
+    assembly.settings().impulse_step.is_none() && region.records().iter().any(closes)
 }
 
 /// Handles the contact of two features of a pair.

@@ -57,8 +57,8 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
 /// Notes the least gap of features of a region that lie opposite each other: beyond their ends a gap is no distance
 /// between bodies.
 fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
-    for (&touch, &(gap, _)) in region.touches().iter().zip(region.motions()) {
-        if books.counts().smallest_gap.is_some_and(|least| least <= gap) {
+    for (&touch, gap) in region.touches().iter().zip(region.motions()) {
+        if books.counts().smallest_gap.is_some_and(|least| least <= gap.distance) {
             continue;
         }
         let [a, b] = features_in(assembly, touch);
@@ -66,7 +66,7 @@ fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
         let is_opposite =
             |sample: GapSample| sample.excess_primary.max(sample.excess_normal).max(sample.overrun) <= 0.0;
         if GapSample::measure(a, &pose[0], b, &pose[1]).is_some_and(is_opposite) {
-            books.note_gap(gap);
+            books.note_gap(gap.distance);
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::rigid::group::groups::{Groups, group_of, put_group};
 use crate::rigid::group::state::Group;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, GapState, Zone};
 
 /// Makes groups of the bodies of a region that held rows or force laws couple; the others stay in flight.
 pub(crate) fn regroup(rooms: &mut Rooms, region: &Region, settling: &Settling) -> Result<(), AdvanceError> {
@@ -75,14 +75,14 @@ fn list_idle(
         return;
     }
     for index in touches {
-        let (touch, (gap, rate)) = (region.touches()[index], region.motions()[index]);
+        let (touch, gap) = (region.touches()[index], region.motions()[index]);
         let is_inside = |body: BodyId| group.bodies().binary_search(&body).is_ok();
         let belongs = |body: BodyId| is_inside(body) || !assembly.is_movable(body);
         if !touch.bodies.iter().all(|&body| belongs(body)) || settling.holds_touch(touch) {
             continue;
         }
-        if rate.abs() <= assembly.rest_speed() {
-            let gap = assembly.refire_gap(gap);
+        if gap.rests(assembly.rest_speed()) {
+            let gap = assembly.refire_gap(gap.distance);
             let source = RowSource::Contact(touch.features);
             let bodies = touch.bodies;
             let (hint, leans) = (None, false);
@@ -114,23 +114,23 @@ pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
         let [a, b] = row.bodies.map(|body| rooms.assembly.moving_at(body, rooms.assembly.now()));
         let has_run_off =
             mechanism(&rooms.assembly, &rooms.connectors).overrun(row.bodies, features, [&a, &b]) > opened;
-        let gap = gap_at(&rooms.assembly, touch, rooms.assembly.now()).0;
+        let gap = gap_at(&rooms.assembly, touch, rooms.assembly.now());
         let stays =
-            gap < opened && gap > -rooms.assembly.settings().tolerances.distance_tol() && !has_run_off;
+            gap.zone() >= Zone::Target && !gap.is_illegal(gap.tolerances.distance_tol()) && !has_run_off;
         if !stays && let Some(pair) = rooms.pairs.between(touch.bodies[0], touch.bodies[1]) {
             rooms.pairs.forget_contact(pair, features);
             touched.push(pair);
         }
         stays
     });
-    let slack = rooms.assembly.settings().tolerances.accuracy;
+    let tolerances = rooms.assembly.settings().tolerances;
     for stop in group.stops() {
         rooms.connectors.unwatch(stop.id);
     }
     group.retain_stops(|stop| {
         let connector = rooms.connectors.connector(stop.id);
         let [a, b] = connector.bodies().map(|body| rooms.assembly.moving_at(body, rooms.assembly.now()));
-        !is_rope(connector) || connector.measure(0, &a, &b).gap <= slack
+        !is_rope(connector) || GapState::of_rope(&connector.measure(0, &a, &b), &tolerances).is_touching()
     });
     put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
     let now = rooms.assembly.now();

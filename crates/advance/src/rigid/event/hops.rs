@@ -5,7 +5,6 @@ use crate::rigid::books::all::Books;
 use crate::rigid::books::impacts::{Booking, book_impact};
 use crate::rigid::connectors::corners::stays_in_corner;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::bounces::closes_fast;
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::held::hops::{force_of, opens, time_of_hops};
@@ -28,7 +27,7 @@ pub(crate) fn still_hops(
     work: &mut EventWork,
 ) -> bool {
     // At the start some contacts may be about to collide; their impacts must not be stopped along with the hops.
-    if work.region.records().iter().any(closes_fast) {
+    if work.region.records().iter().any(|record| record.gap_state().rebounds()) {
         return false;
     }
     let Some(wait) = time_of_hops(assembly, &work.region, &work.settling) else { return false };

@@ -26,7 +26,7 @@ pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
     }
     let rest = rooms.assembly.rest_speed();
     work.fired_open =
-        fired.is_some_and(|fired| gap_at(&rooms.assembly, fired, rooms.assembly.now()).1 > -rest);
+        fired.is_some_and(|fired| !gap_at(&rooms.assembly, fired, rooms.assembly.now()).closes(rest));
     if work.region.cause() == Cause::Tick {
         put_back(rooms, work);
     }

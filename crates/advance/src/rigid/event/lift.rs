@@ -87,9 +87,8 @@ fn pose_lift(assembly: &Assembly, region: &Region, Lift { problem, rows, .. }: &
     rows.clear();
     let mut any_sunk = false;
     for (index, record) in region.records().iter().enumerate() {
-        let target = if record.parties.primary.site.is_some() { record.tolerances.target_gap } else { 0.0 };
-        let offset = record.geometry.distance - target;
-        any_sunk |= offset < 0.0 && !record.parties.bilateral;
+        let offset = record.distance_to_target();
+        any_sunk |= record.gap_state().is_sunk_below(record.tolerances.target_gap);
         let Some(row) = region.row_of(record, offset) else { continue };
         problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
         rows.push(index);

@@ -14,7 +14,7 @@ use crate::rigid::search::dead_point::dead_point_gap;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::sinking::depth::sinks_to;
 use crate::rigid::zeno::repeats::repeats_beyond_calm;
-use halfgap_collision::pair_tolerances;
+use halfgap_collision::{Zone, pair_tolerances};
 
 /// Distance by which a body that touches another fires later elsewhere, as a fraction of the accuracy: more than
 /// rounding.
@@ -40,9 +40,8 @@ pub(crate) fn set_rules(
 ) {
     let rest = assembly.rest_speed();
     region.bodies().iter().for_each(|&body| pairs.forget_modes_of(body));
-    let least = assembly.settings().tolerances.target_gap - assembly.settings().tolerances.accuracy;
     set_trigger_gaps(assembly, search, region);
-    for (touch, &(gap, rate)) in region.touches().iter().zip(region.motions()) {
+    for (touch, gap) in region.touches().iter().zip(region.motions()) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
         let is_held = settling.holds_touch(*touch);
         let mode = if is_held {
@@ -54,11 +53,15 @@ pub(crate) fn set_rules(
         } else {
             // A contact that fires although it does not close would do so again at once: it may sink, but no
             // farther than its zone.
-            let stays = rate <= rest
-                || (gap > least
+            let stays = !gap.opens(rest)
+                || (gap.zone() <= Zone::Target
                     && fires_open(pairs, pair, touch.features)
                     && assembly.remedies().act(Remedy::OpenFiring));
-            Mode::Open(if stays { sinks_to(assembly, *touch, gap) } else { opens_to(assembly, *touch) })
+            Mode::Open(if stays {
+                sinks_to(assembly, *touch, gap.distance)
+            } else {
+                opens_to(assembly, *touch)
+            })
         };
         if !says_nothing(assembly, search, touch, mode) {
             pairs.set_mode(pair, touch.features, mode);
@@ -113,13 +116,13 @@ fn set_trigger_gaps(assembly: &Assembly, search: &mut Neighbourhood, region: &Re
     }
     let seam = SEAM_SHARE * assembly.settings().tolerances.accuracy;
     let least = target - assembly.settings().tolerances.accuracy;
-    for (touch, &(gap, rate)) in region.touches().iter().zip(region.motions()) {
-        if rate > assembly.rest_speed() {
+    for (touch, gap) in region.touches().iter().zip(region.motions()) {
+        if gap.opens(assembly.rest_speed()) {
             continue;
         }
         for body in touch.bodies.into_iter().filter(|&body| region.place(body).is_some()) {
             let trigger_gap = search.lanes()[body.index()].trigger_gap();
-            let lower = (gap - seam).max(least);
+            let lower = (gap.distance - seam).max(least);
             if lower < trigger_gap && assembly.remedies().act(Remedy::TriggerGaps) {
                 search.set_trigger_gap(body, lower);
             }

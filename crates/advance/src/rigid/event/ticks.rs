@@ -22,7 +22,7 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::shares::NEARLY_ALL;
 use crate::rigid::sinking::depth::{BEHIND, DEEP_SHARE, FIRST_SHARE, FURTHER_SHARE, Sinking, room_to_sink};
 use crate::time::Time;
-use halfgap_collision::Tolerances;
+use halfgap_collision::Zone;
 use halfgap_geometry::FeatureId;
 
 /// Largest number of collisions of sunk contacts within a step.
@@ -33,22 +33,19 @@ pub(crate) fn sinks(rooms: &mut Rooms, pair: PairId, features: [FeatureId; 2]) -
     let Some(step) = rooms.assembly.settings().impulse_step else { return false };
     let bodies = rooms.pairs.bodies(pair);
     let touch = Touch::new(bodies, features);
-    let (gap, rate) = gap_at(&rooms.assembly, touch, rooms.assembly.now());
-    if gap == f64::INFINITY {
+    let gap = gap_at(&rooms.assembly, touch, rooms.assembly.now());
+    if gap.distance == f64::INFINITY {
         return false;
     }
     let tolerances = rooms.assembly.settings().tolerances;
     let room = room_to_sink(&rooms.assembly, bodies);
-    let is_deep = gap < tolerances.target_gap - DEEP_SHARE * room;
-    let is_fast = -rate > tolerances.velocity_tol;
-    let is_deepest = gap < tolerances.target_gap - NEARLY_ALL * room;
-    if is_deepest
-        || is_fast
-            && (is_deep || !has_stayed_low(&rooms.assembly, &rooms.pairs, pair, features, -rate, &tolerances))
-    {
+    let sinks_by = |share: f64| gap.is_sunk_below(tolerances.target_gap - share * room);
+    let down = -gap.normal_velocity;
+    let stays_low = || has_stayed_low(&rooms.assembly, &rooms.pairs, pair, features, down, &tolerances);
+    if sinks_by(NEARLY_ALL) || gap.rebounds() && (sinks_by(DEEP_SHARE) || !stays_low()) {
         return false;
     }
-    let lowest = (tolerances.target_gap - FIRST_SHARE * room).min(gap - FURTHER_SHARE * room);
+    let lowest = (tolerances.target_gap - FIRST_SHARE * room).min(gap.distance - FURTHER_SHARE * room);
     let tick = next_tick(&rooms.assembly, &mut rooms.sinking, step);
     rooms.pairs.set_mode(pair, features, Mode::Open(lowest));
     rooms.sinking.wait(touch);
@@ -69,7 +66,7 @@ pub(crate) fn note_pressed(
 ) -> Result<(), AdvanceError> {
     let Some(step) = assembly.settings().impulse_step else { return Ok(()) };
     let sunk = assembly.settings().tolerances.target_gap - DEEP_SHARE * room_to_sink(assembly, touch.bodies);
-    if gap_at(assembly, touch, assembly.now()).0 >= sunk {
+    if !gap_at(assembly, touch, assembly.now()).is_sunk_below(sunk) {
         return Ok(());
     }
     let events = sinking.note_pressed();
@@ -94,8 +91,8 @@ pub(crate) fn handle_tick(rooms: &mut Rooms) -> Result<(), AdvanceError> {
     rooms.agenda.clear(Source::Tick);
     rooms.sinking.begin_tick();
     for index in 0..rooms.sinking.waiting().len() {
-        let (gap, _) = gap_at(&rooms.assembly, rooms.sinking.waiting()[index], rooms.assembly.now());
-        rooms.books.note_gap(gap);
+        let gap = gap_at(&rooms.assembly, rooms.sinking.waiting()[index], rooms.assembly.now());
+        rooms.books.note_gap(gap.distance);
     }
     let outcome = with_work(rooms, Cause::Tick, |rooms, work| {
         work.seeds.clear();
@@ -111,10 +108,9 @@ pub(crate) fn handle_tick(rooms: &mut Rooms) -> Result<(), AdvanceError> {
 /// Keeps waiting the touches that could not be put back altogether, and sets the next tick for them.
 fn keep_what_is_sunk(assembly: &Assembly, sinking: &mut Sinking, agenda: &mut Agenda) {
     let mut waiting = sinking.take_waiting();
-    let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
     waiting.retain(|touch| {
-        let gap = gap_at(assembly, *touch, assembly.now()).0;
-        gap < target_gap - accuracy && gap >= -BEHIND * room_to_sink(assembly, touch.bodies)
+        let gap = gap_at(assembly, *touch, assembly.now());
+        gap.zone() > Zone::Target && !gap.is_illegal(BEHIND * room_to_sink(assembly, touch.bodies))
     });
     sinking.put_waiting(waiting);
     if let Some(step) = assembly.settings().impulse_step.filter(|_| !sinking.waiting().is_empty()) {
@@ -130,7 +126,7 @@ mod tests {
     use crate::rigid::shares::NEARLY_ALL;
     use crate::rigid::sinking::depth::sinks_to;
     use crate::rigid::test_scene::resting_discs;
-    use halfgap_collision::BodyId;
+    use halfgap_collision::{BodyId, Tolerances};
 
     #[test]
     fn a_contact_stopped_deep_sinks_a_part_of_the_depth_left() {

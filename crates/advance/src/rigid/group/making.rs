@@ -9,7 +9,7 @@ use crate::rigid::group::groups::Groups;
 use crate::rigid::group::state::{Group, Work};
 use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::shares::SEVERAL;
-use halfgap_collision::{BodyId, ConnectorId};
+use halfgap_collision::{BodyId, ConnectorId, GapState};
 
 impl Group {
     /// Sets the bodies and the held rows of a new group. Bilateral rows come first: a contact that depends on them gives
@@ -73,8 +73,8 @@ impl Group {
         }
         let [a, b] = bodies.map(|body| assembly.moving_at(body, assembly.now()));
         let sample = connector.measure(0, &a, &b);
-        sample.gap <= assembly.settings().tolerances.accuracy
-            && sample.kinematics.rate.abs() <= assembly.rest_speed()
+        let rest = assembly.rest_speed();
+        GapState::of_rope(&sample, &assembly.settings().tolerances).is_contact(-rest..=rest)
     }
 
     /// Lists the laws that act on its bodies, and the works that are integrated with it: those of laws without potential

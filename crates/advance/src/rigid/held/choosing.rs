@@ -99,18 +99,18 @@ fn held_row(
 #[inline]
 pub(crate) fn lifted(assembly: &Assembly, pairs: &Pairs, record: &Collision) -> Option<f64> {
     let is_contact = record.connector().is_none();
-    let lies_deep = |lowest: f64| !record.parties.bilateral && record.geometry.distance < lowest;
+    let gap = record.gap_state();
     let (lowest, sunk) = (lower_end(record), SUNK * record.tolerances.sink());
-    if !lies_deep(lowest - sunk) || !assembly.remedies().is_on(Remedy::Lifting) {
+    if !gap.is_sunk_below(lowest - sunk) || !assembly.remedies().is_on(Remedy::Lifting) {
         return None;
     }
-    let deepest = -DEEPEST * record.tolerances.target_gap;
+    let depth = DEEPEST * record.tolerances.target_gap;
     if !is_seen(assembly, record) {
-        return (is_contact && lies_deep(deepest)).then_some(deepest);
+        return (is_contact && gap.is_illegal(depth)).then_some(-depth);
     }
-    let formed = if is_contact { formed_at(pairs, record).max(deepest) } else { lowest };
+    let formed = if is_contact { formed_at(pairs, record).max(-depth) } else { lowest };
     let lowest = lowest.min(formed);
-    lies_deep(lowest - sunk).then_some(lowest)
+    gap.is_sunk_below(lowest - sunk).then_some(lowest)
 }
 
 /// True if the target zone of a record is so wide relative to its bodies that their place in it can be seen.

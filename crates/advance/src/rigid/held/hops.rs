@@ -16,7 +16,7 @@ use halfgap_collision::{BodyId, Collision};
 /// True if a contact of a region opens, perhaps in a low hop only. A contact that is alone in its region must open
 /// no faster than `velocity_tol`: a faster one bounces visibly, and is stopped when it lands.
 pub(crate) fn may_hop(assembly: &Assembly, region: &Region, record: &Collision) -> bool {
-    let is_slow = record.motion.normal_velocity <= record.tolerances.velocity_tol;
+    let is_slow = !record.gap_state().opens(record.tolerances.velocity_tol);
     opens(assembly, record) && (region.records().len() > 1 || is_slow)
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn turning(assembly: &Assembly, record: &Collision) -> f64 {
 
 /// True if a contact opens faster than at rest.
 pub(crate) fn opens(assembly: &Assembly, record: &Collision) -> bool {
-    !record.parties.bilateral && record.motion.normal_velocity > assembly.rest_speed()
+    record.gap_state().opens(assembly.rest_speed())
 }
 
 /// True if any held contact opens.

@@ -23,7 +23,7 @@ pub(crate) fn let_pass(
         let record = &region.records()[index];
         let bodies = record.bodies();
         let passes = !record.parties.bilateral
-            && record.geometry.distance > dead_point_gap(assembly, bodies)
+            && !record.gap_state().is_sunk_below(dead_point_gap(assembly, bodies))
             && bodies.iter().any(|&body| is_tied(connectors, body))
             && levers.left_of(region, record, |body| assembly.inertia(body)) < NEGLIGIBLE * NEGLIGIBLE;
         let touch = Touch::of(record).filter(|_| passes);

@@ -64,8 +64,7 @@ pub(crate) fn settle(
     };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
-        let is_slow = (-rest..=rest).contains(&record.motion.normal_velocity);
-        record.parties.bilateral || (holds(view.assembly, record) && is_slow)
+        holds(view.assembly, record) && record.is_contact(-rest..=rest)
     };
     let records = || region.records().iter().enumerate();
     settling.candidates.extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));

@@ -6,7 +6,7 @@ use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, interrupt};
 use crate::rigid::books::report::{ImpactReport, RowReport};
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::bounces::{bounces_low, closes_fast};
+use crate::rigid::contacts::bounces::bounces_low;
 use crate::rigid::contacts::pairs::{Pairs, is_likely};
 use crate::rigid::contacts::rows::row_of;
 use crate::rigid::error::{AdvanceError, Between};
@@ -65,7 +65,7 @@ pub(crate) fn set_rows(
         && assembly.remedies().act(Remedy::LowBounces);
     let rows = region.records().iter().map(|record| {
         let row = row_of(assembly, record);
-        let elasticity = if dull && closes_fast(record) { 0.0 } else { row.elasticity };
+        let elasticity = if dull && record.gap_state().rebounds() { 0.0 } else { row.elasticity };
         CollisionRow { elasticity, held: was_held(connectors, pairs, record), ..row }
     });
     impact.set_rows(rows);

@@ -17,7 +17,7 @@ use crate::rigid::sinking::depth::may_have_sunk_by;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
-    BodyId, Collision, Detector, Moment, Zone, detect_features_of_pair, merge_collisions, record_features,
+    BodyId, Collision, Detector, Moment, detect_features_of_pair, merge_collisions, record_features,
 };
 
 /// Adds the records of the connectors of a body of the region, and the bodies at their other ends.
@@ -32,15 +32,17 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
         }
         let moving = [a, b].map(|body| view.assembly.moving_at(body, time));
         for row in 0..view.connectors.row_count(id) {
-            let record = view.connectors.connector_record(view.assembly, id, row, &moving, time);
+            let mut record = view.connectors.connector_record(view.assembly, id, row, &moving, time);
             let is_held = connector.is_bilateral() || view.connectors.is_held_unilaterally(id);
-            if !is_held && record.geometry.distance > view.assembly.settings().tolerances.accuracy {
+            // A rope that is held is taut, however far dense output has its ends from its length.
+            record.must_handle |= is_held;
+            if !record.must_handle && !record.gap_state().is_touching() {
                 continue;
             }
             // A row at rest is held, or may be; a held rope is at no dead point, though dense output may have it
             // closing.
-            let closes = !is_held && record.motion.normal_velocity < -view.assembly.rest_speed();
-            if is_rope(connector) && closes && rope_is_near_dead_point(view.assembly, view.connectors, id) {
+            let collides = !is_held && record.gap_state().is_colliding(view.assembly.rest_speed());
+            if is_rope(connector) && collides && rope_is_near_dead_point(view.assembly, view.connectors, id) {
                 continue;
             }
             region.records.push(record);
@@ -148,6 +150,9 @@ fn collect_pair(view: &View<'_>, region: &mut Region, [first, second]: &[Moment<
             fresh.extend(record.filter(|record| fired == Some(*known) || is_near(record)));
         }
     }
+    for record in &mut fresh {
+        record.must_handle |= fired.is_some() && touch_of(record, bodies) == fired;
+    }
     region.touches.extend(fresh.iter().filter_map(|record| touch_of(record, [first.id, second.id])));
     if let Some(run_off) = region.cause.run_off() {
         fresh.retain(|record| touch_of(record, [first.id, second.id]) != Some(run_off));
@@ -172,17 +177,17 @@ fn counts_as_touching(
     at_start: bool,
     takes_over: bool,
 ) -> bool {
-    let (rest, rate) = (view.assembly.rest_speed(), record.motion.normal_velocity);
-    if record.zone() == Zone::OutOfRange {
+    let (gap, rest) = (record.gap_state(), view.assembly.rest_speed());
+    if !gap.is_touching() {
         return false;
     }
     // Corners that pass each other before they come to their target do not meet.
-    let passes =
-        rate < -rest && passes_by(view.search, record) && view.assembly.remedies().act(Remedy::PassingBy);
-    record.distance_to_target() <= view.assembly.sink()
-        || (record.zone() >= Zone::Target && rate < -rest && !passes)
-        || (at_start && !passes)
-        || (rate.abs() <= rest && (takes_over || is_held_contact(view.pairs, record, bodies)))
+    let passes = gap.is_colliding(rest)
+        && passes_by(view.search, record)
+        && view.assembly.remedies().act(Remedy::PassingBy);
+    gap.is_at_target(view.assembly.sink())
+        || (!passes && (at_start || record.is_close_enough(view.assembly.sink(), rest)))
+        || (gap.rests(rest) && (takes_over || is_held_contact(view.pairs, record, bodies)))
         || is_carried(view.assembly, view.groups, record)
 }
 

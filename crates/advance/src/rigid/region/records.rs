@@ -3,10 +3,11 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::gaps::gap_at;
+use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Collision, Detector, Moving};
+use halfgap_collision::{BodyId, Collision, Detector, GapState, Moving};
 use halfgap_geometry::GapSample;
 
 /// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
@@ -46,19 +47,37 @@ pub(crate) fn remeasure(assembly: &Assembly, connectors: &Connectors, region: &m
     }
 }
 
-/// Gap [m] and rate [m/s] at a time of the contact, rope or stop that fires an event; `None` for other causes.
+/// Gap at a time of the contact, rope or stop that fires an event; `None` for other causes.
 pub(crate) fn gap_of_cause(
     assembly: &Assembly,
     connectors: &Connectors,
     cause: Cause,
     time: Time,
-) -> Option<(f64, f64)> {
+) -> Option<GapState> {
     match cause {
         Cause::Fired(touch) => Some(gap_at(assembly, touch, time)),
         Cause::Taut(id) => {
             let sample = connectors.measure_connector(assembly, id, 0, time);
-            Some((sample.gap, sample.kinematics.rate))
+            Some(GapState::of_rope(&sample, &assembly.settings().tolerances))
         }
         _ => None,
+    }
+}
+
+/// Gap [m] at which the search saw the contact, rope or stop that fires an event, whose region was collected at a time:
+/// that of the first detection in the record of the contact. It is measured where a record of the same place stands for
+/// that one.
+pub(crate) fn seen_gap_of_cause(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    time: Time,
+) -> Option<f64> {
+    let fired = region.cause.fired();
+    let mut records = region.records.iter();
+    let record = records.find(|record| fired.is_some() && Touch::of(record) == fired);
+    match record {
+        Some(record) => Some(record.detection().distance),
+        None => gap_of_cause(assembly, connectors, region.cause, time).map(|gap| gap.distance),
     }
 }

@@ -5,7 +5,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
-use halfgap_collision::{BodyId, Collision};
+use halfgap_collision::{BodyId, Collision, GapState};
 use halfgap_contact::{Impact, InverseInertia, Problem, ProblemBody, Row};
 
 /// Bodies and records of an event. Buffers are kept from one event to the next.
@@ -17,8 +17,8 @@ pub(crate) struct Region {
     pub(super) records: Vec<Collision>,
     /// All pairs of features that touch.
     pub(super) touches: Vec<Touch>,
-    /// Gap [m] and rate [m/s] of each pair in `touches` after the event.
-    pub(super) motions: Vec<(f64, f64)>,
+    /// Gap of each pair in `touches` after the event.
+    pub(super) motions: Vec<GapState>,
     /// Leaders of the groups of these bodies.
     pub(super) groups: Vec<BodyId>,
     /// Cause of the event.
@@ -181,9 +181,9 @@ impl Region {
         self.in_storm
     }
 
-    /// Gap [m] and rate [m/s] of each pair in `touches` after the event.
+    /// Gap of each pair in `touches` after the event.
     #[inline]
-    pub(crate) fn motions(&self) -> &[(f64, f64)] {
+    pub(crate) fn motions(&self) -> &[GapState] {
         &self.motions
     }
 

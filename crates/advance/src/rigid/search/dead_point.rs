@@ -17,7 +17,7 @@ use crate::rigid::search::searching::Searching;
 use crate::rigid::shares::NEARLY_ALL;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyId, Collision, ConnectorId};
+use halfgap_collision::{BodyId, Collision, ConnectorId, GapState, first_closing_time};
 use halfgap_geometry::{Feature, FeatureId};
 
 /// Apparent loss of a gap as a multiple of the connectors' error in the middle of a step.
@@ -45,7 +45,7 @@ impl Searching<'_> {
 
 /// True if the features of a record close, and turn back at a dead point.
 pub(crate) fn is_near_dead_point(assembly: &Assembly, connectors: &Connectors, record: &Collision) -> bool {
-    record.motion.normal_velocity < -assembly.rest_speed()
+    record.gap_state().is_colliding(assembly.rest_speed())
         && Touch::of(record).is_some_and(|touch| turns_back(assembly, connectors, touch))
         && assembly.remedies().act(Remedy::DeadPoints)
 }
@@ -65,7 +65,10 @@ pub(crate) fn dead_point_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
 fn turns_back(assembly: &Assembly, connectors: &Connectors, touch: Touch) -> bool {
     let least = least_dead_point_gap(assembly, touch.bodies);
     let Some(corners) = corners_of(assembly, touch) else {
-        return parts_again(assembly, connectors, touch.bodies, least, |time| gap_at(assembly, touch, time));
+        return parts_again(assembly, connectors, touch.bodies, least, |time| {
+            let GapState { distance, normal_velocity, .. } = gap_at(assembly, touch, time);
+            (distance, normal_velocity)
+        });
     };
     // The distance of two corners that run into each other is never negative: it would grow again.
     let apart = |time: Time| {
@@ -144,7 +147,7 @@ fn parts_again(
         return false;
     }
     let acceleration = (gap_at(assembly.now().plus(span)).1 - rate) / span;
-    let turns = acceleration > 0.0 && rate * rate < 2.0 * acceleration * room;
+    let turns = first_closing_time(room, rate, acceleration).is_none();
     let nearest = -rate / acceleration;
     turns && (nearest > known || gap_at(assembly.now().plus(nearest)).0 > least)
 }

@@ -70,7 +70,7 @@ impl Searching<'_> {
 
 /// True if the features of a record are those of corners that pass over each other.
 pub(crate) fn is_ghost_corner(assembly: &Assembly, record: &Collision) -> bool {
-    record.motion.normal_velocity < -assembly.rest_speed()
+    record.gap_state().is_colliding(assembly.rest_speed())
         && Touch::of(record)
             .is_some_and(|touch| passing_features(assembly, touch.bodies, touch.features).is_some())
         && assembly.remedies().act(Remedy::GhostCorners)

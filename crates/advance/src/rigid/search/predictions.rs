@@ -10,7 +10,7 @@ use crate::rigid::sinking::depth::may_have_sunk_by;
 use crate::time::Time;
 use halfgap_collision::{
     BodyId, FeatureRule, Motion, MovingShape, PairSearch, Polynomial, Search, SearchSettings, Tolerances,
-    disc_contact,
+    Zone, disc_contact,
 };
 use halfgap_geometry::{FeatureId, GapSample};
 
@@ -202,12 +202,12 @@ impl Searching<'_> {
         );
         let (shape_a, shape_b) =
             (&self.assembly.trajectory(a).body().shape, &self.assembly.trajectory(b).body().shape);
-        let opened =
-            self.assembly.settings().tolerances.target_gap + self.assembly.settings().tolerances.accuracy;
+        let tolerances = &self.assembly.settings().tolerances;
         let is_closed = |[feature_a, feature_b]: [FeatureId; 2], mode: Mode| {
             let features = [shape_a.feature(feature_a), shape_b.feature(feature_b)];
             let sample = GapSample::measure_unbounded(features[0], &pose_a, features[1], &pose_b);
-            !matches!(mode, Mode::Open(_)) || sample.is_some_and(|sample| sample.gap < opened)
+            !matches!(mode, Mode::Open(_))
+                || sample.is_some_and(|sample| Zone::of(sample.gap, tolerances) >= Zone::Target)
         };
         self.pairs.retain_modes(pair, is_closed);
     }

@@ -3,7 +3,7 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::shares::{MINOR, NEARLY_ALL};
-use halfgap_collision::{BodyId, Tolerances};
+use halfgap_collision::{BodyId, Tolerances, Zone};
 
 /// Contacts that wait for the next tick.
 #[derive(Clone, Debug, Default)]
@@ -114,11 +114,11 @@ pub(crate) fn room_to_sink(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
 /// or their turning, may press on at once a contact that was stopped below its zone until it is put back: it may go
 /// a fraction of the way that is left to the depth beyond which it sinks no further.
 pub(crate) fn sinks_to(assembly: &Assembly, touch: Touch, gap: f64) -> f64 {
-    let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
-    if assembly.settings().impulse_step.is_none() || gap >= target_gap - accuracy {
+    let tolerances = &assembly.settings().tolerances;
+    if assembly.settings().impulse_step.is_none() || Zone::of(gap, tolerances) <= Zone::Target {
         return assembly.refire_gap(gap);
     }
-    let left = gap - target_gap + NEARLY_ALL * room_to_sink(assembly, touch.bodies);
+    let left = gap - tolerances.target_gap + NEARLY_ALL * room_to_sink(assembly, touch.bodies);
     gap - assembly.sink().max(FURTHER_SHARE * left)
 }
 

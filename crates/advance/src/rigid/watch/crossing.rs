@@ -2,13 +2,14 @@
 //!
 //! Five samples decide: a change of sign brackets the fall; where the samples stay positive, the quartic through them
 //! shows where the function may dip below zero in between, however briefly, and is followed by samples there. The
-//! bracket is closed by inverse parabolas where they are sure to serve, else by bisection: some functions have a kink
-//! where they fall (T. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear
-//! function without using derivatives", Advances in Engineering Software 28,
-//! 1997).
+//! first look into the bracket is at the time that `collision` estimates for a gap, by the values at both ends and the
+//! quartic's rates there. Inverse parabolas go on where they are sure to serve, else bisection: some functions have a
+//! kink where they fall (T. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear
+//! function without using derivatives", Advances in Engineering Software 28, 1997).
 
 use crate::rigid::group::samples::{EARLY, NODES, middle_node};
 use crate::rigid::shares::{HALVINGS, NEGLIGIBLE};
+use halfgap_collision::{EstimatePoint, estimate_target_time};
 
 /// Number of parts of the way between two nodes, in each of which the quartic has one minimum at most.
 const PARTS: usize = 4;
@@ -38,7 +39,7 @@ pub(crate) fn early_fall(
     let index = values.iter().position(|&value| value < 0.0).filter(|_| start >= 0.0)?;
     let above =
         index.checked_sub(1).map_or((0.0, start), |before| (early_node(before, span), values[before]));
-    Some(close(above, (early_node(index, span), values[index]), span, f))
+    Some(close(above, (early_node(index, span), values[index]), span, None, f))
 }
 
 /// Offset [s], up to the first node, at which `f` has fallen below zero after the last early node at which it was not.
@@ -56,7 +57,7 @@ pub(crate) fn fall_after_rise(
         let value = f(offset);
         (value >= 0.0).then_some((offset, value))
     })?;
-    Some(close(above, (node(1, span), values[1]), span, f))
+    Some(close(above, (node(1, span), values[1]), span, None, f))
 }
 
 /// A part of a segment, between two offsets [s].
@@ -131,11 +132,13 @@ pub(crate) fn first_fall_before(
             continue;
         }
         if end < 0.0 {
-            return Some(close((from, values[index]), (to, end), span, f));
+            let guess = quartic.estimate((from, values[index]), (to, end), span);
+            return Some(close((from, values[index]), (to, end), span, guess, f));
         }
         let dip = quartic.dip_between(index).and_then(|dip| find_dip(dip, [from, to], span, &mut f));
         if let Some(below) = dip {
-            return Some(close((from, values[index]), below, span, f));
+            let guess = quartic.estimate((from, values[index]), below, span);
+            return Some(close((from, values[index]), below, span, guess, f));
         }
     }
     None
@@ -213,6 +216,16 @@ impl Quartic {
         first + from_middle * (2.0 * second + from_middle * (3.0 * third + from_middle * 4.0 * fourth))
     }
 
+    /// Estimates the offset [s] of a fall between two samples of a segment, by their values and the quartic's rates there.
+    fn estimate(&self, above: Sample, below: Sample, span: f64) -> Option<f64> {
+        let scale = span / (NODES - 1) as f64;
+        let [earlier, later] = [above, below].map(|(time, distance)| {
+            let normal_velocity = self.slope(time / scale - middle_node()) / scale;
+            EstimatePoint { time, distance, normal_velocity }
+        });
+        estimate_target_time(earlier, later, 0.0)
+    }
+
     /// Place, in nodes, of the lowest minimum between two nodes, if it is below zero or nearly so.
     fn dip_between(&self, index: usize) -> Option<f64> {
         let first = index as f64 - middle_node();
@@ -264,8 +277,14 @@ impl Quartic {
 type Sample = (f64, f64);
 
 /// Closes a bracket from `above` (not negative) to `below` (negative), and returns an offset [s] at which `f` is
-/// negative.
-pub(crate) fn close(above: Sample, below: Sample, span: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+/// negative. The first look is at a `guess`, if there is one, else where the chord through the two samples vanishes.
+pub(crate) fn close(
+    above: Sample,
+    below: Sample,
+    span: f64,
+    guess: Option<f64>,
+    mut f: impl FnMut(f64) -> f64,
+) -> f64 {
     // The bracket is between the last place and the far one; the one before was left.
     let (mut last, mut far, mut left) = (above, below, None);
     for _ in 0..MOST_STEPS {
@@ -276,7 +295,7 @@ pub(crate) fn close(above: Sample, below: Sample, span: f64, mut f: impl FnMut(f
             break;
         }
         let part = match left {
-            None => last.1 / (last.1 - far.1),
+            None => guess.map_or(last.1 / (last.1 - far.1), |guess| (guess - last.0) / width),
             Some(left) => part_by_parabola(last, far, left).unwrap_or(0.5),
         };
         let inside = last.0 + part.clamp(nearest, 1.0 - nearest) * width;
@@ -330,13 +349,29 @@ mod tests {
             let mut looks = 0;
             // The function falls from the start to minus the end, ever steeper.
             let f = |t: f64| start - (start + end) * t * (1.0 + t * t) / 2.0;
-            let fall = close((0.0, f(0.0)), (1.0, f(1.0)), 1.0, |t| {
+            let fall = close((0.0, f(0.0)), (1.0, f(1.0)), 1.0, None, |t| {
                 looks += 1;
                 f(t)
             });
             assert!(f(fall) < 0.0 && f(fall - 2.0 * CLOSED) >= 0.0, "{fall}");
             assert!(looks <= 11, "{looks} looks");
         }
+    }
+
+    #[test]
+    fn the_first_look_at_a_free_fall_is_at_its_end() {
+        let f = |t: f64| 0.3 - 0.1 * t - 0.5 * t * t;
+        let values = std::array::from_fn(|index| f(node(index, 1.0)));
+        let mut first = None;
+        let fall = first_fall(&values, 1.0, |t| {
+            first.get_or_insert(t);
+            f(t)
+        });
+        let (first, fall) = (first.expect("it looks"), fall.expect("it falls"));
+        assert!(
+            (first - fall).abs() < 1e-13,
+            "the estimate is exact under a constant acceleration: {first}, {fall}"
+        );
     }
 
     #[test]
