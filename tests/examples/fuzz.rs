@@ -57,6 +57,12 @@ fn remedies(names: &str) -> Option<Vec<Remedy>> {
     names.split(',').map(of_name).collect()
 }
 
+/// The names of some remedies; `None` without any.
+fn names_of(remedies: &[Remedy]) -> Option<String> {
+    let names: Vec<_> = remedies.iter().map(|remedy| remedy.name()).collect();
+    (!names.is_empty()).then(|| names.join(","))
+}
+
 /// What is wrong with the arguments, if something is.
 fn complaint(arguments: &[String]) -> Option<String> {
     let mut rest = arguments.iter();
@@ -287,11 +293,7 @@ fn spawn(Trials { scenes, needs }: &Trials, first: u64, count: u64) -> (Child, R
     let mut child = Command::new(program)
         .args([WORKER, "--seed", &first.to_string(), "--count", &count.to_string()])
         .args(scenes.option())
-        .args((!needs.is_empty()).then_some(NEEDS))
-        .args(
-            (!needs.is_empty())
-                .then(|| needs.iter().map(|remedy| remedy.name()).collect::<Vec<_>>().join(",")),
-        )
+        .args(names_of(needs).iter().flat_map(|names| [NEEDS, names]))
         .stdout(Stdio::piped())
         .spawn()
         .expect("a process can be started");

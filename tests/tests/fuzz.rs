@@ -5,11 +5,11 @@
 //! This is a binary of its own: the hook that silences panics here would silence those of other tests, too.
 
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{Finding, RunError, World};
+use halfgap::{Finding, Remedy, RemedySet, RunError, World, WorldBuilder};
 use halfgap_tests::generate::{
     billiard_of_seed, coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed,
 };
-use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial};
+use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial, trial_without};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -430,6 +430,38 @@ fn bodies_that_strong_forces_press_together_end_a_run_that_would_go_on_for_hours
     let mut world = World::from_scene(&scene).expect("it can be built");
     let outcome = world.advance_to(scene.run.end_time(), &mut |_| ());
     assert!(matches!(outcome, Err(RunError::Pressed { .. })), "{outcome:?}");
+}
+
+/// The scene of a seed, of one kind.
+type OfSeed = fn(u64) -> Value;
+
+/// Scenes that end worse without a remedy, for those of which no other test tells: the scene and its seed.
+const NEEDS: &[(Remedy, OfSeed, u64)] =
+    &[(Remedy::Storms, impulses_of_seed, 71_001_799), (Remedy::Passed, impulses_of_seed, 71_000_557)];
+
+#[test]
+fn scenes_that_need_a_remedy_end_worse_without_it() {
+    for &(remedy, of_seed, seed) in NEEDS {
+        let scene = of_seed(seed).to_string();
+        let (with, _) = trial_without(&scene, PATIENT, RemedySet::NONE);
+        let (without, _) = trial_without(&scene, PATIENT, RemedySet::NONE.with(remedy));
+        assert!(without.is_worse_than(&with), "{}, {seed}: {without:?} instead of {with:?}", remedy.name());
+    }
+}
+
+#[test]
+fn blocks_that_hop_lower_than_their_zone_come_to_rest() {
+    let scene =
+        Scene::parse(&variation_of_seed(70_000_345).to_string(), SceneFormat::Json).expect("it is a scene");
+    let steps = |without: RemedySet| {
+        let mut builder = WorldBuilder::from_scene(&scene).expect("it can be collected");
+        builder.settings_mut().without = without;
+        let mut world = builder.build().expect("it can be built");
+        world.advance_to(scene.run.end_time(), &mut |_| ()).expect("it comes to its end");
+        world.statistics().steps
+    };
+    let (with, without) = (steps(RemedySet::NONE), steps(RemedySet::NONE.with(Remedy::LowHops)));
+    assert!(without > 4 * with, "the lower the hops, the more of them: {without} steps, not {with}");
 }
 
 /// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but its
