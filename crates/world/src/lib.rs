@@ -66,6 +66,7 @@ mod run_error;
 pub mod scene;
 mod settings;
 mod start;
+mod strategy;
 mod unmeant;
 mod world;
 mod world_error;
