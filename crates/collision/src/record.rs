@@ -15,6 +15,7 @@ use halfgap_geometry::{FeatureId, FeatureKind, GapSample, Shape};
 
 /// Origin of a collision record: the kinds of the two features, or a row of a connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum Detector {
     /// A vertex near a vertex.
     CornerCorner,
@@ -33,6 +34,7 @@ pub enum Detector {
 
 /// One body's side of a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Participant {
     /// The body.
     pub body: BodyId,
@@ -42,6 +44,7 @@ pub struct Participant {
 
 /// Part of a shape that takes part in a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Site {
     /// The feature of the shape.
     pub feature: FeatureId,
@@ -83,6 +86,7 @@ impl Participant {
 
 /// The two sides of a collision, and its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Parties {
     /// The body that the normal points to.
     pub primary: Participant,
@@ -96,6 +100,7 @@ pub struct Parties {
 
 /// Place, normal and distance of a collision, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactGeometry {
     /// Point of the primary body that touches [m].
     pub point_primary: DVec2,
@@ -134,6 +139,7 @@ impl ContactGeometry {
 
 /// Velocities of the bodies at the place where they touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactMotion {
     /// Velocity of the primary impact point relative to the normal one [m/s].
     pub impact_velocity: DVec2,
@@ -149,6 +155,7 @@ pub struct ContactMotion {
 
 /// State of a collision when it was first detected, before the back-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Detection {
     /// Time [s].
     pub time: f64,
@@ -160,6 +167,7 @@ pub struct Detection {
 
 /// Response to a collision: restitution, impulse and force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Response {
     /// Coefficient of restitution [-]: the lesser of the two bodies' elasticities, or that of the connector.
     pub elasticity: f64,
@@ -187,6 +195,7 @@ pub enum CollisionError {
 
 /// Record of one place where two bodies touch or are about to. Absent values are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Collision {
     /// The two sides, and the origin of the record.
     pub parties: Parties,

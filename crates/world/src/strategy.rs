@@ -8,12 +8,17 @@ use halfgap_advance::rigid::{
     AdvanceError, ContactChanges, Counts, Handled, ImpactReport, Ledger, RemedyCounts, RigidParts,
     RigidSettings, RigidSystem, RowForce, VelocityChange,
 };
+#[cfg(feature = "save")]
+use halfgap_advance::rigid::{PartsError, SavedSystem};
 use halfgap_advance::{EventDriven, Time};
+#[cfg(feature = "save")]
+use halfgap_collision::Connector;
 use halfgap_collision::{Body, BodyId, BodyState, ConnectorId, RailHint};
 use std::sync::Arc;
 
 /// The system of a world, by the strategy that advances it.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize))]
 pub(crate) enum Strategy {
     /// Each event at its own time.
     Events(RigidSystem),
@@ -27,6 +32,14 @@ impl Strategy {
         start: Time,
     ) -> Result<Self, AdvanceError> {
         RigidSystem::new(parts, settings, start).map(Self::Events)
+    }
+
+    /// The connectors.
+    #[cfg(feature = "save")]
+    pub(crate) fn connectors(&self) -> &[Connector] {
+        match self {
+            Self::Events(system) => system.connectors(),
+        }
     }
 
     /// Time of the last event handled.
@@ -230,6 +243,23 @@ impl EventDriven for Strategy {
     fn arrive(&mut self) {
         match self {
             Self::Events(system) => system.arrive(),
+        }
+    }
+}
+
+/// A system that was saved, without its force laws: what serialising a [`Strategy`] leaves.
+#[cfg(feature = "save")]
+#[derive(serde::Deserialize)]
+pub(crate) enum SavedStrategy {
+    Events(SavedSystem),
+}
+
+#[cfg(feature = "save")]
+impl SavedStrategy {
+    /// The system, given the force laws that it had.
+    pub(crate) fn with_laws(self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<Strategy, PartsError> {
+        match self {
+            Self::Events(saved) => saved.with_laws(laws).map(Strategy::Events),
         }
     }
 }

@@ -64,6 +64,7 @@ pub struct Statistics {
 
 /// Data of a body that the layers below do not hold.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Named {
     pub(crate) name: String,
     /// Centre of mass in shape coordinates [m].
@@ -76,6 +77,7 @@ pub(crate) struct Named {
 
 /// Mass and moment of inertia of a movable body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertia {
     /// Mass [kg].
     pub mass: f64,
@@ -87,10 +89,10 @@ pub struct Inertia {
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) strategy: Strategy,
-    bodies: Vec<Named>,
+    pub(crate) bodies: Vec<Named>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) now: Time,
-    warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
     pub(crate) start: Start,
     /// The last impact reported, always an `Event::Impact`: its buffers are reused.
     pub(crate) told: Event,
@@ -101,6 +103,7 @@ pub struct World {
 
 /// Corrections of the bodies before the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Start {
     /// Largest distance by which a centre of mass was moved [m].
     pub(crate) displacement: f64,

@@ -9,10 +9,12 @@ use halfgap_geometry::FeatureId;
 
 /// Index of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairId(pub(crate) u32);
 
 /// Prediction of a pair's next contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Prediction {
     /// Contact of these features, at the time until which the pair is clear.
     Contact([FeatureId; 2]),
@@ -24,6 +26,7 @@ pub(crate) enum Prediction {
 
 /// State of a pair of bodies: all that every prediction reads, and no more, within a cache line.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[repr(align(32))]
 pub(crate) struct Pair {
     /// Time before which there is no contact.
@@ -38,6 +41,7 @@ pub(crate) struct Pair {
 
 /// A pair as one of its bodies sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Link {
     pub(crate) pair: PairId,
     pub(crate) other: BodyId,
@@ -45,6 +49,7 @@ pub(crate) struct Link {
 
 /// Rules and past contacts of a pair.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairPast {
     /// Rules that change the search of feature pairs.
     pub(super) rules: Vec<FeatureRule>,
@@ -69,6 +74,7 @@ impl PairPast {
 
 /// State of two features at the last event in which they touched.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Seen {
     /// Features of the lesser body and of the other.
     pub(crate) features: [FeatureId; 2],
@@ -88,6 +94,7 @@ pub(crate) struct Seen {
 
 /// All pairs, and lists of them by body.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
     /// The bodies of each pair, the lesser first.

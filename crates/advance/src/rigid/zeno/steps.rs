@@ -10,6 +10,7 @@ pub(crate) const FEW_STEPS: u32 = 64;
 
 /// The recent steps of a group, kept for the body that leads it.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pace {
     pub(super) all: Count<STEPS>,
     pub(super) few: Count<FEW_STEPS>,
@@ -20,6 +21,7 @@ pub(crate) struct Pace {
 
 /// Takes the mean length of every `STEPS` steps.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Count<const STEPS: u32> {
     /// Time at which counting began; `None` if it has not.
     since: Option<Time>,

@@ -31,6 +31,7 @@ const MOST_REFINEMENTS: usize = 10;
 
 /// The rows beside the pins of a tree, with their buffers.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct LoopRows {
     /// Indices of the rows in the group.
     pub(super) rows: Vec<usize>,
