@@ -31,6 +31,7 @@ const BEFORE_ROOT: usize = CHILDREN - 1;
 /// The part of an entry that mostly decides its order: the first number [s] of its time. Between equal ones the rest of
 /// the time decides, which is kept in `sources`, and then the source.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Key {
     seconds: f64,
     source: u32,
@@ -41,11 +42,13 @@ const NOTHING: Key = Key { seconds: f64::INFINITY, source: ABSENT };
 
 /// The children of a node, in one cache line: a heap of many sources costs as much as the lines it touches.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[repr(align(64))]
 struct Family([Key; CHILDREN]);
 
 /// Queue of predicted events, at most one per source.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct EventQueue {
     families: Vec<Family>,
     len: usize,
@@ -55,6 +58,7 @@ pub struct EventQueue {
 
 /// Place and rest of the time of one source's event.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Source {
     /// Place of its entry in the heap, or `ABSENT`.
     place: u32,

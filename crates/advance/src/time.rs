@@ -9,6 +9,7 @@ use std::fmt;
 /// Adding a step is exact to about 1e-32 of the time, so that an event a million seconds into a run is as sharp as one
 /// at its start. Source of the exact sum: D. Knuth, The Art of Computer Programming 2, 4.2.2, theorem B.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Time {
     seconds: f64,
     rest: f64,

@@ -5,6 +5,7 @@ use halfgap_geometry::Shape;
 
 /// Index of a body in its world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyId(pub u32);
 
 impl BodyId {
@@ -39,6 +40,7 @@ impl BodyId {
 
 /// A rigid body. The origin of its shape's coordinates is the centre of mass.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Body {
     /// Shape in body coordinates.
     pub shape: Shape,

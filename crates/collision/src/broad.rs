@@ -21,6 +21,7 @@ const FIRST_ROOM: usize = 16;
 
 /// Reference to a child of a node, or to the root: another node, or a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Link(u32);
 
 impl Link {
@@ -55,6 +56,7 @@ impl Link {
 
 /// Place of a child in the tree: a side of a node, or the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Slot {
     node: u32,
     side: u32,
@@ -76,6 +78,7 @@ impl Slot {
 
 /// A child of a node: its box, its reference, and the number of levels below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Child {
     bounds: Aabb,
     link: Link,
@@ -85,6 +88,7 @@ struct Child {
 
 /// A node with its two children, aligned to two lines of the cache that are read together.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[repr(align(128))]
 struct Node {
     children: [Child; 2],
@@ -103,6 +107,7 @@ impl Node {
 
 /// The box of a body and its place in the tree.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Leaf {
     bounds: Aabb,
     slot: Slot,
@@ -110,11 +115,13 @@ struct Leaf {
 
 /// A balanced tree of boxes, one for each body.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct BroadPhase {
     nodes: Vec<Node>,
     root: Option<Link>,
     free: Vec<usize>,
     /// Nodes whose children a search tests, one level after another.
+    #[cfg_attr(feature = "save", serde(skip))]
     frontier: Vec<u32>,
     /// Leaf of each body, by index.
     leaves: Vec<Option<Leaf>>,

@@ -4,6 +4,7 @@ use crate::quadratic::first_closing_time;
 
 /// State of a gap at a moment: that of its first detection, or one of the two that an estimate needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct EstimatePoint {
     /// Time [s].
     pub time: f64,

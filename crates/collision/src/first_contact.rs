@@ -52,6 +52,7 @@ impl<M: Motion> MovingShape<'_, M> {
 
 /// Limits of a search. Only `depth` and `rest` change its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct SearchSettings {
     /// Number of steps of one march before the search pauses; the next call goes on from there. 0 counts as 1.
     pub march_steps: u32,
@@ -163,6 +164,7 @@ pub fn search_step<A: Motion, B: Motion>(
 
 /// Exception for one pair of features in a search: another target gap, or no search at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct FeatureRule {
     /// Feature of the first and of the second shape.
     pub features: [FeatureId; 2],

@@ -27,6 +27,7 @@ const SERIES: [f64; SERIES_TERMS] = {
 
 /// The motion of a body on which only uniform forces and linear damping act; also that of a fixed body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Flight {
     start: BodyState,
     start_rotation: Rotation,

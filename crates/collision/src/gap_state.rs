@@ -14,6 +14,7 @@ use std::ops::RangeInclusive;
 
 /// Distance and rate of a gap at one moment, with what is needed to judge them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct GapState {
     /// Distance [m] along the normal; negative for penetration.
     pub distance: f64,

@@ -17,6 +17,7 @@ use halfgap_geometry::{GapKind, GapSample};
 
 /// Arms from the two centres of mass to the two feature centres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Arms {
     /// Arm from the primary body's centre of mass [m].
     pub primary: DVec2,
@@ -26,6 +27,7 @@ pub struct Arms {
 
 /// Rate and acceleration terms of one gap at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct GapKinematics {
     /// Rate of the gap [m/s], negative when closing.
     pub rate: f64,

@@ -5,6 +5,7 @@ use halfgap_geometry::Pose;
 
 /// Position, angle and velocities of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyState {
     /// Centre of mass [m].
     pub position: DVec2,
@@ -27,6 +28,7 @@ impl BodyState {
 
 /// Pose and velocities of a body at one moment: a [`BodyState`] whose rotation is already computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moving {
     /// Pose of the body, its origin at the centre of mass.
     pub pose: Pose,
@@ -61,6 +63,7 @@ impl From<&BodyState> for Moving {
 
 /// All vectors within some distance of a centre: a bound with a direction, so that parts common to two bodies cancel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ball {
     /// Centre, in the unit of the bounded quantity.
     pub center: DVec2,
@@ -100,6 +103,7 @@ impl Ball {
 
 /// Bounds on a body's motion over an interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionBounds {
     /// Velocity of the centre of mass [m/s].
     pub velocity: Ball,

@@ -21,6 +21,7 @@ use std::ops::RangeInclusive;
 
 /// Origin of a collision record: the kinds of the two features, or a row of a connector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum Detector {
     /// A vertex near a vertex.
     CornerCorner,
@@ -39,6 +40,7 @@ pub enum Detector {
 
 /// One body's side of a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Participant {
     /// The body.
     pub body: BodyId,
@@ -48,6 +50,7 @@ pub struct Participant {
 
 /// Part of a shape that takes part in a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Site {
     /// The feature of the shape.
     pub feature: FeatureId,
@@ -89,6 +92,7 @@ impl Participant {
 
 /// The two sides of a collision, and its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Parties {
     /// The body that the normal points to.
     pub primary: Participant,
@@ -102,6 +106,7 @@ pub struct Parties {
 
 /// Place, normal and distance of a collision, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactGeometry {
     /// Point of the primary body that touches [m].
     pub point_primary: DVec2,
@@ -140,6 +145,7 @@ impl ContactGeometry {
 
 /// Velocities of the bodies at the place where they touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactMotion {
     /// Velocity of the primary impact point relative to the normal one [m/s].
     pub impact_velocity: DVec2,
@@ -155,6 +161,7 @@ pub struct ContactMotion {
 
 /// Response to a collision: restitution, impulse and force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Response {
     /// Coefficient of restitution [-]: the lesser of the two bodies' elasticities, or that of the connector.
     pub elasticity: f64,
@@ -166,6 +173,7 @@ pub struct Response {
 
 /// Record of one place where two bodies touch or are about to. Absent values are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Collision {
     /// The two sides, and the origin of the record.
     pub parties: Parties,

@@ -2,6 +2,7 @@
 
 /// Thresholds of gaps and speeds, shared by the layers above geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tolerances {
     /// Gap [m] at which an approaching pair fires: half of `distance_tol`.
     ///

@@ -43,6 +43,7 @@ const CLEAR: f64 = 16.0 * f64::EPSILON;
 /// [`ProximalNewton`], in the second case from an interior point. If an answer fails its check, the other methods are
 /// tried, at last Lemke's with twice as many digits.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Auto {
     settings: Settings,
     islands: Islands,
@@ -57,6 +58,7 @@ pub struct Auto {
 }
 
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Methods {
     settings: Settings,
     dual: DualActiveSet,

@@ -3,6 +3,9 @@
 //! Its pattern is that of all rows, closed or not, so that the symbolic analysis (fill-reducing order, elimination
 //! tree) stays valid while the same bodies touch. Buffers are kept; factoring again allocates nothing.
 
+#[cfg(feature = "save")]
+mod saved;
+
 use std::fmt;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -57,10 +60,7 @@ impl Clone for BodyFactor {
             analysis: None,
         };
         if let Some(known) = &self.analysis {
-            copy.analyse(self.column_start.len() - 1);
-            if let Some(analysis) = &mut copy.analysis {
-                analysis.factor.copy_from_slice(&known.factor);
-            }
+            copy.analyse_as(&known.factor);
         }
         copy
     }
@@ -136,6 +136,16 @@ impl BodyFactor {
         let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         let factor = vec![0.0; symbolic.len_val()];
         self.analysis = Some(Analysis { symbolic, factor, memory: MemBuffer::new(numeric.or(solve)) });
+    }
+
+    /// Makes the analysis of the present pattern, with the numbers of a known factor of it. Returns false if they do not
+    /// belong to it.
+    fn analyse_as(&mut self, factor: &[f64]) -> bool {
+        self.analyse(self.column_start.len().saturating_sub(1));
+        let fits = |analysis: &&mut Analysis| analysis.factor.len() == factor.len();
+        let Some(analysis) = self.analysis.as_mut().filter(fits) else { return false };
+        analysis.factor.copy_from_slice(factor);
+        true
     }
 
     /// Factors I + Ĵᵀ W Ĵ with a weight W of each row. Returns whether that succeeded.

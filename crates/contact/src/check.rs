@@ -24,6 +24,7 @@ use crate::settings::Settings;
 /// Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.10. An answer that is not finite has
 /// infinite residuals, and so have answers to problems that are not [plain](Problem::is_plain).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Residuals {
     /// Natural residual r_nat [-], in units of the scale max|b/s|.
     pub natural: f64,
@@ -93,6 +94,7 @@ impl fmt::Display for Residuals {
 
 /// Computes residuals, with buffers that are kept from check to check.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Checker {
     /// M⁻¹ Jᵀ f per column, and the sum of its absolute terms.
     velocity: Vec<[f64; 2]>,

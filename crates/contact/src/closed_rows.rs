@@ -23,6 +23,7 @@ const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// State shared by the phases of the dual active-set method.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClosedRows {
     pub(crate) system: System,
     /// Order in which rows are closed many at a time.

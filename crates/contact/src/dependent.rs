@@ -22,6 +22,7 @@ pub(crate) enum Reconciled {
 
 /// The amounts taken off b̂ to remove contradictions.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Shift {
     taken: Vec<f64>,
     /// Null directions of the bilateral rows, orthogonal to each other, along which b̂ is zero now.

@@ -25,6 +25,7 @@ const NONE: u32 = u32::MAX;
 
 /// Basic variables as affine functions of the nonbasic ones.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Dictionary<T> {
     n: usize,
     /// Rows of n + 1 coefficients and the constant.

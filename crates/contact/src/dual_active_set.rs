@@ -61,6 +61,7 @@ const PATIENCE: usize = 400;
 /// Idnani, Mathematical Programming 27, 1983, 1-33; with contacts the pivoting of D. Baraff, SIGGRAPH '94, 23-34, with
 /// dependent contacts handled exactly.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct DualActiveSet {
     pub(crate) settings: Settings,
     pub(crate) closed: ClosedRows,
@@ -99,6 +100,7 @@ pub struct DualActiveSet {
 
 /// The reason for which another method is likely to be faster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum HandOver {
     /// Many rows depend on others, so that the closed ones are an arbitrary choice.
     Redundant,

@@ -12,6 +12,7 @@ const MOST_PER_ROW: usize = 64;
 
 /// The entries A_ij of rows that share a movable column.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Entries {
     /// The pattern that the places are for: offsets and columns of the rows, and one flag per movable column.
     start: Vec<usize>,

@@ -2,6 +2,7 @@
 
 use crate::check::Residuals;
 use crate::solver::Method;
+use crate::words::Words;
 use halfgap_collision::geometry::Rounded;
 
 /// A number of [`Settings`](crate::Settings) is not positive and finite.
@@ -143,6 +144,7 @@ pub enum ProblemError {
 
 /// The reason for which a solve has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum SolveError {
     /// No forces satisfy the rows, by the enclosed proof.
@@ -166,7 +168,8 @@ pub enum SolveError {
         /// Index of the row.
         row: usize,
         /// Words for its kind.
-        kind: &'static str,
+        #[cfg_attr(feature = "save", serde(with = "crate::words"))]
+        kind: Words,
     },
     /// The method does not apply to this kind of problem.
     #[error("{method} does not apply: {reason}")]
@@ -174,7 +177,8 @@ pub enum SolveError {
         /// The method.
         method: Method,
         /// Property that the method needs and the problem lacks.
-        reason: &'static str,
+        #[cfg_attr(feature = "save", serde(with = "crate::words"))]
+        reason: Words,
     },
 }
 
@@ -198,6 +202,7 @@ impl SolveError {
 /// zᵀ(A f + b) ≤ bᵀz < 0, so the accelerations cannot all be admissible (Farkas' lemma). If A is symmetric and positive
 /// semidefinite, A z = 0 then.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[error(
         "no forces satisfy the rows: they contradict each other at row {row}, by {} of the scale",
         Rounded(*contradiction)

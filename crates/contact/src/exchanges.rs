@@ -19,6 +19,7 @@ const MOST: usize = 400;
 
 /// A row that took the place of another.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Exchange {
     entered: usize,
     left: usize,
@@ -30,6 +31,7 @@ struct Exchange {
 
 /// The exchanges since the factor was made.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Exchanges {
     list: Vec<Exchange>,
     shares: Vec<(usize, f64)>,

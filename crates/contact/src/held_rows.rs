@@ -57,6 +57,7 @@ const NONE: u32 = u32::MAX;
 /// assert!((change[0][1] + 0.75 * 9.81).abs() < 1e-14);
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeldRows {
     /// Fraction of a row's square up to which its remainder makes it dependent.
     dependence: f64,

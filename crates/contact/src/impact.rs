@@ -47,6 +47,7 @@ const NOISE: f64 = 64.0 * f64::EPSILON;
 
 /// An impact: its rows with their rates and impulses. [`ImpactLaw::resolve`] finds the impulses.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impact {
     rows: Vec<CollisionRow>,
     has_connectors: bool,
@@ -75,6 +76,7 @@ pub struct Impact {
 
 /// Buffers of the laws, kept from one impact to the next.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Scratch {
     /// The rows that are solved together, and one flag per row of the impact.
     set: Vec<usize>,

@@ -41,6 +41,7 @@ const BILATERAL_TERM: f64 = 1e-9;
 
 /// The interior-point method with its buffers: f and a of each row, their changes, and the residuals of the equations.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct InteriorPoint {
     pub(crate) force: Vec<f64>,
     pub(crate) acceleration: Vec<f64>,

@@ -15,6 +15,7 @@ pub(crate) const KEPT: usize = 64;
 
 /// The islands of a problem, and the first of them as problems of their own.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Islands {
     parent: Vec<u32>,
     /// Last row met, per column.

@@ -6,9 +6,11 @@
 use crate::error::{ProblemError, SolveError};
 use crate::problem::Problem;
 use crate::solver::Method;
+use crate::words;
 
 /// How the force f of a row and its acceleration a belong together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum RowKind {
     /// f ≥ 0, a ≥ 0, f a = 0: a contact, a rope, a stop.
@@ -46,10 +48,10 @@ impl RowKind {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Unilateral => "a unilateral row",
-            Self::Bilateral => "a bilateral row",
-            Self::Bounded { .. } => "a row bounded by constants",
-            Self::Friction { .. } => "a row bounded by friction",
+            Self::Unilateral => words::UNILATERAL,
+            Self::Bilateral => words::BILATERAL,
+            Self::Bounded { .. } => words::BOUNDED,
+            Self::Friction { .. } => words::FRICTION,
         }
     }
 
@@ -84,6 +86,7 @@ pub(crate) type Direction = [[f64; 3]; 2];
 
 /// The rows of a problem that are not plain, ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct FurtherRows(Vec<(usize, RowKind, Option<Direction>)>);
 
 impl FurtherRows {
@@ -146,7 +149,7 @@ impl Problem {
     /// Refuses, in the name of a method, a problem that is not plain, or not given with a symmetric matrix.
     pub(crate) fn require_symmetric(&self, method: Method) -> Result<(), SolveError> {
         self.require_plain(method)?;
-        let reason = "it needs a symmetric, positive semidefinite matrix";
+        let reason = words::SYMMETRIC_ONLY;
         if self.is_symmetric() { Ok(()) } else { Err(SolveError::NotApplicable { method, reason }) }
     }
 

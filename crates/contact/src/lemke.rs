@@ -57,6 +57,7 @@ const CORRECTIONS: usize = 8;
 /// certificate. The tableau is dense; a pivot costs n². Sources: C. Lemke, Management Science 11, 1965; for bimatrix
 /// games C. Lemke, J. Howson, SIAM Journal 12, 1964.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lemke {
     settings: Settings,
     dictionary: Dictionary<f64>,

@@ -92,6 +92,7 @@ mod system;
 mod test_problems;
 mod twofold;
 mod warm;
+mod words;
 
 pub use auto::Auto;
 pub use check::Residuals;

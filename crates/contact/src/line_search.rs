@@ -5,6 +5,7 @@
 
 /// A nondecreasing piecewise linear function of t: value + slope t, with kinks.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PiecewiseLinear {
     value: f64,
     slope: f64,
@@ -13,6 +14,7 @@ pub(crate) struct PiecewiseLinear {
 
 /// An addition of `value` + `slope` t to the function from t = `at` on.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Kink {
     at: f64,
     value: f64,

@@ -11,6 +11,7 @@ const SYMMETRY: f64 = 1e-9;
 
 /// A sparse matrix stored by rows, entries of a row in ascending order of column, none twice.
 #[derive(Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct SparseMatrix {
     pub(crate) start: Vec<usize>,
     pub(crate) column: Vec<usize>,
@@ -130,6 +131,7 @@ impl SparseMatrix {
 
 /// The rows J and the inverse mass of each of its columns.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct BodyRows {
     pub(crate) rows: SparseMatrix,
     /// Inverse mass [1/kg], or inverse moment of inertia [1/(kg m²)], of each column; 0 for an immovable one.
@@ -207,6 +209,7 @@ impl BodyRows {
 
 /// The matrix A of a problem, in the form in which it was given.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Matrix {
     /// A = J M⁻¹ Jᵀ, symmetric and positive semidefinite by construction.
     Bodies(BodyRows),

@@ -13,6 +13,7 @@ const NARROW: usize = 12;
 
 /// A row order, kept while the pattern stays the same.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RowOrder {
     pub(crate) rows: Vec<u32>,
     start: Vec<usize>,

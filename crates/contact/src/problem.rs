@@ -40,6 +40,7 @@ use crate::matrix::{BodyRows, Matrix, SparseMatrix, check_finite};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Problem {
     pub(crate) matrix: Matrix,
     pub(crate) offset: Vec<f64>,
@@ -65,6 +66,7 @@ pub struct ProblemBody(pub u32);
 ///
 /// Any number except that of [`NONE`](Self::NONE); two rows of one problem should not share a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactKey(pub u64);
 
 impl ContactKey {
@@ -74,6 +76,7 @@ impl ContactKey {
 
 /// Inverse mass and inverse moment of inertia of a body; both are 0 for an immovable body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct InverseInertia {
     /// Inverse mass 1/m [1/kg].
     pub inverse_mass: f64,

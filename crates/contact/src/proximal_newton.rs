@@ -25,6 +25,7 @@ use crate::solution::Solution;
 use crate::solver::{Method, Solver};
 use crate::system::System;
 use crate::warm::WarmStart;
+use crate::words;
 
 /// Proximal term ε of the first outer iteration without an earlier answer, in units of the diagonal of Â, which is 1.
 const FIRST_TERM: f64 = 1e-4;
@@ -72,6 +73,7 @@ enum Begin {
 /// The number of steps hardly depends on the number of redundant contacts, and the forces are near those of least norm.
 /// Sources: QPALM (B. Hermans et al., CDC 2019) and PROX-QP (A. Bambade et al., RSS 2022).
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProximalNewton {
     settings: Settings,
     system: System,
@@ -153,7 +155,7 @@ impl ProximalNewton {
         solution.reset(problem.len(), method);
         problem.require_plain(method)?;
         if !problem.has_bodies() {
-            let reason = "it needs the rows of bodies and their masses";
+            let reason = words::BODIES_ONLY;
             return Err(SolveError::NotApplicable { method, reason });
         }
         self.load(problem, warm);

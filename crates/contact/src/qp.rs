@@ -18,6 +18,7 @@ use crate::solution::Solution;
 use crate::solver::{Method, Solver};
 use crate::start::Start;
 use crate::system::System;
+use crate::words;
 
 /// Largest number of rows of a matrix A that is factored to get rows J, which is dense work.
 const FACTORED: usize = 200;
@@ -28,6 +29,7 @@ const FACTORED: usize = 200;
 /// given by the entries of A may have at most 200 rows. Source: P. Goulart, Y. Chen, "Clarabel: An interior-point
 /// solver for conic programs with quadratic objectives", arXiv 2405.12762, 2024.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Qp {
     settings: Settings,
     system: System,
@@ -116,7 +118,7 @@ impl Solver for Qp {
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
         problem.require_symmetric(Method::Qp)?;
         if !problem.has_bodies() && problem.len() > FACTORED {
-            let reason = "so large a problem must be given by the rows of bodies and their masses";
+            let reason = words::TOO_LARGE;
             return Err(SolveError::NotApplicable { method: Method::Qp, reason });
         }
         self.system.load(problem);

@@ -9,6 +9,7 @@ use halfgap_collision::{BodyId, Collision};
 /// The rate of its gap is J v [m/s] with the velocities v = (vAx, vAy, wA, vBx, vBy, wB) [m/s, m/s, rad/s, ...] of the
 /// primary body A and the normal body B.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionRow {
     /// The primary and the normal body.
     pub bodies: [BodyId; 2],

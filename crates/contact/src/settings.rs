@@ -24,6 +24,7 @@ const SAME: f64 = 2.0 * f64::EPSILON;
 /// Rows are compared after scaling: with `s_i = sqrt(A_ii)` (1 where `A_ii = 0`) the scaled acceleration is
 /// `a_i / s_i`, the scaled force `s_i f_i`, and the *scale* of a problem is `max |b_i / s_i|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Settings {
     /// Largest natural residual of an accepted answer, in units of the scale.
     pub natural_residual: f64,
@@ -95,6 +96,7 @@ pub struct Settings {
 /// Nearly redundant contacts can be satisfied exactly as given only by forces of 1e5 times the load and more, which are
 /// of no use. Up to rounding, forces of the size of the load satisfy them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum Contradiction {
     /// Solve the rows as given, up to rounding of A, if the residual rules accept the large forces of that answer;
     /// otherwise by least squares.
@@ -106,6 +108,7 @@ pub enum Contradiction {
 
 /// Selection among the forces that redundant contacts leave open. The accelerations do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum ForceSelection {
     /// The forces that are found soonest. Where many rows are redundant, all of them may carry force.
     #[default]

@@ -8,6 +8,7 @@
 
 /// A lower triangular factor with rows of varying length.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Skyline {
     /// Rows one after the other in order of position, with holes where rows were removed.
     data: Vec<f64>,

@@ -7,6 +7,7 @@ use crate::solver::Method;
 ///
 /// A solver fills it; reused for later problems, it keeps the memory of its buffers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solution {
     /// Force f_i of each row \[N\], or impulse [N·s] in an impact problem.
     pub force: Vec<f64>,

@@ -114,6 +114,7 @@ pub trait Solver {
 
 /// Names of the methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
     /// Automatic choice by size and structure; in a solution, islands solved by different methods.
@@ -131,6 +132,13 @@ pub enum Method {
 }
 
 impl Method {
+    /// True if this build has the method: quadratic programming takes the feature `qp`.
+    #[must_use]
+    #[inline]
+    pub fn is_built(self) -> bool {
+        self != Method::Qp || cfg!(feature = "qp")
+    }
+
     /// The name used on the command line and in files.
     #[must_use]
     #[inline]

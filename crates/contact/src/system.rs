@@ -15,6 +15,7 @@ const NONE: u32 = u32::MAX;
 /// Scaled rows. The closed rows are listed per column, so that Â_dC takes time proportional to the contacts of the
 /// bodies that row d touches.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct System {
     /// Whether the rows below are Ĵ; otherwise they are Â.
     bodies: bool,

@@ -43,6 +43,7 @@ impl Number for f64 {
 
 /// A sum of two `f64`, the second at most a rounding of the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Twofold {
     high: f64,
     low: f64,

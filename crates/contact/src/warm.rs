@@ -8,6 +8,7 @@ use crate::solution::Solution;
 
 /// The closed rows and forces of an earlier answer, or a guess of them, as the start of a later solve.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct WarmStart {
     /// Sorted by key if all rows have keys, by row otherwise.
     entries: Vec<Entry>,
@@ -17,6 +18,7 @@ pub struct WarmStart {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Entry {
     id: u64,
     force: f64,

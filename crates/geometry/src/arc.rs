@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 /// As an edge of a shape (solid on the left) an arc that runs counter-clockwise is convex, one that runs clockwise is
 /// concave.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Arc {
     center: DVec2,
     radius: f64,

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 /// An axis-aligned box, never empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Aabb {
     /// Lower left corner [m].
     pub min: DVec2,

@@ -8,6 +8,7 @@ use glam::DVec2;
 
 /// An edge, run with the solid on its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum Edge {
     /// A straight edge.
     Line(Line),

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 /// Index of a feature in its shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct FeatureId(pub u32);
 
 impl FeatureId {
@@ -20,6 +21,7 @@ impl FeatureId {
 
 /// Index of an edge of a shape: its path, and its place in the path in the direction in which the shape runs it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct EdgeId {
     /// Index of the path.
     pub path: u32,
@@ -29,6 +31,7 @@ pub struct EdgeId {
 
 /// The four kinds of features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum FeatureKind {
     /// A corner that points outwards.
     Vertex,
@@ -153,6 +156,7 @@ impl Feature {
 
 /// A range of directions, run counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum DirectionRange {
     /// All directions.
     Full,

@@ -28,6 +28,7 @@ pub enum GapKind {
 
 /// Kind of contact that is possible between two features, `a` and `b`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum PairKind {
     /// Two features that are both convex or vertices.
     Outer,

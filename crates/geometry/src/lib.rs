@@ -57,6 +57,8 @@ mod pool;
 mod pose;
 mod ray;
 mod rounded;
+#[cfg(feature = "save")]
+mod saved;
 mod shape;
 mod simple;
 mod sine;

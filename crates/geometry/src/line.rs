@@ -6,6 +6,7 @@ use glam::DVec2;
 
 /// A straight edge from one point to another, with the solid on its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Line {
     from: DVec2,
     to: DVec2,

@@ -68,6 +68,7 @@ impl PathSpec {
 
 /// A closed path of edges, each starting exactly where the one before it ends.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Path {
     edges: Vec<Edge>,
 }

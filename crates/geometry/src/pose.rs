@@ -5,6 +5,7 @@ use glam::DVec2;
 
 /// A rotation, kept as its cosine and sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
     /// Cosine of the angle.
     pub cos: f64,
@@ -45,6 +46,7 @@ impl Rotation {
 
 /// Placement of a body: body coordinates are turned about the body's origin, then shifted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// World position [m] of the body's origin.
     pub position: DVec2,

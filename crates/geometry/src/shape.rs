@@ -276,7 +276,8 @@ impl Shape {
         &self.parts.tree
     }
 
-    fn from_oriented(paths: Vec<Path>) -> Self {
+    /// The shape of paths that have the solid on their left.
+    pub(crate) fn from_oriented(paths: Vec<Path>) -> Self {
         let boxes = paths.iter().map(Path::bounds);
         let bounds = boxes.reduce(Aabb::union).unwrap_or(Aabb::around(DVec2::ZERO));
         let mass = MassProperties::of_paths(&paths, bounds.center());

@@ -3,8 +3,9 @@
 
 use crate::event::{ContactEvent, Event, ImpactRow};
 use crate::run_error::RunError;
+use crate::strategy::Strategy;
 use crate::world::{World, contact_force};
-use halfgap_advance::rigid::{AdvanceError, Handled, ImpactReport, RigidSystem, RowForce};
+use halfgap_advance::rigid::{AdvanceError, Handled, ImpactReport, RowForce};
 use halfgap_advance::{Time, advance_watched};
 use std::ops::ControlFlow;
 
@@ -98,21 +99,21 @@ impl World {
         if time >= self.time() {
             self.ask_guard()?;
         }
-        let has_failed = self.system.failure().is_some();
+        let has_failed = self.strategy.failure().is_some();
         let until = Time::from_seconds(time);
-        self.system.set_duration(self.monitor.duration.max(time - self.time()));
+        self.strategy.set_duration(self.monitor.duration.max(time - self.time()));
         if self.tell_first_impact(on_event).is_break() {
-            return self.conclude(Ok(ControlFlow::Break(())), self.system.now());
+            return self.conclude(Ok(ControlFlow::Break(())), self.strategy.now());
         }
-        let (system, told) = (&mut self.system, &mut self.told);
-        let outcome = advance_watched(system, until, |system, handled| {
+        let (strategy, told) = (&mut self.strategy, &mut self.told);
+        let outcome = advance_watched(strategy, until, |strategy, handled| {
             let told =
-                handled.map_or(ControlFlow::Continue(()), |&handled| tell(told, system, handled, on_event));
-            let after = after_each(system.now().seconds(), handled.is_none());
+                handled.map_or(ControlFlow::Continue(()), |&handled| tell(told, strategy, handled, on_event));
+            let after = after_each(strategy.now().seconds(), handled.is_none());
             if told.is_break() { told } else { after }
         });
         let reached =
-            if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.system.now() };
+            if matches!(outcome, Ok(ControlFlow::Continue(()))) { until } else { self.strategy.now() };
         if !has_failed {
             self.tell_last_words(on_event);
         }
@@ -127,14 +128,14 @@ impl World {
         if !std::mem::take(&mut self.owes_first_impact) {
             return ControlFlow::Continue(());
         }
-        write_impact(&mut self.told, self.system.last_impact());
+        write_impact(&mut self.told, self.strategy.last_impact());
         on_event(&self.told)
     }
 
     /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system
     /// that had failed before: its last impact has been reported then.
     pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
-        if let Some(impact) = self.system.untold_impact() {
+        if let Some(impact) = self.strategy.untold_impact() {
             write_impact(&mut self.told, impact);
             // The world cannot go on, whatever the caller answers.
             let _ = on_event(&self.told);
@@ -156,16 +157,16 @@ impl World {
 /// Reports an event that was handled, its impact in a reused buffer. Returns `Break` if a callback did.
 pub(crate) fn tell(
     told: &mut Event,
-    system: &RigidSystem,
+    strategy: &Strategy,
     handled: Handled,
     on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let mut stops = false;
     if handled.impact {
-        write_impact(told, system.last_impact());
+        write_impact(told, strategy.last_impact());
         stops |= on_event(told).is_break();
     }
-    let changes = system.contact_changes();
+    let changes = strategy.contact_changes();
     let told_of = |row: &RowForce| ContactEvent {
         time: changes.time.seconds(),
         contact: contact_force(row),

@@ -26,14 +26,21 @@ impl ConnectorSpec {
     }
 }
 
-/// Returns the name of a kind of connector in messages and scene files.
-pub(crate) fn kind_name(kind: &ConnectorKind) -> &'static str {
+/// Name of a kind of connector in messages and scene files, one of [`KIND_NAMES`].
+pub(crate) type KindName = &'static str;
+
+/// Names of all kinds of connectors.
+pub(crate) const KIND_NAMES: [KindName; 6] = ["pin", "slot", "rod", "rope", "rail", "rail_stop"];
+
+/// Returns the name of a kind of connector.
+pub(crate) fn kind_name(kind: &ConnectorKind) -> KindName {
+    let [pin, slot, rod, rope, rail, rail_stop] = KIND_NAMES;
     match kind {
-        ConnectorKind::Pin { .. } => "pin",
-        ConnectorKind::Slot { .. } => "slot",
-        ConnectorKind::Rod { .. } => "rod",
-        ConnectorKind::Rope { .. } => "rope",
-        ConnectorKind::Rail { .. } => "rail",
-        ConnectorKind::RailStop { .. } => "rail_stop",
+        ConnectorKind::Pin { .. } => pin,
+        ConnectorKind::Slot { .. } => slot,
+        ConnectorKind::Rod { .. } => rod,
+        ConnectorKind::Rope { .. } => rope,
+        ConnectorKind::Rail { .. } => rail,
+        ConnectorKind::RailStop { .. } => rail_stop,
     }
 }

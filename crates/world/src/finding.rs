@@ -52,6 +52,7 @@ const CAPTURED: f64 = 5e-2;
 ///
 /// `turned_over` is the energy in play: see [`World::findings`].
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Finding {
     /// A connector is off.

@@ -4,10 +4,11 @@ use crate::advance::tell;
 use crate::builder::LARGEST;
 use crate::event::Event;
 use crate::run_error::RunError;
+use crate::strategy::Strategy;
 use crate::world::World;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{AdvanceError, Handled, RigidSystem, VelocityChange};
+use halfgap_advance::rigid::{AdvanceError, Handled, VelocityChange};
 use halfgap_collision::{BodyId, BodyState};
 use std::ops::ControlFlow;
 
@@ -102,28 +103,28 @@ impl World {
         interventions.iter().try_for_each(|intervention| self.check_intervention(intervention))?;
         let changes = self.changes_by(interventions);
         changes.iter().try_for_each(|change| self.check_change(change))?;
-        self.interrupt(on_event, |system, now| system.intervene(now, &changes))
+        self.interrupt(on_event, |strategy, now| strategy.intervene(now, &changes))
     }
 
     /// Lets an event of the caller's happen at the present time, and reports it.
     pub(crate) fn interrupt(
         &mut self,
         on_event: &mut dyn FnMut(&Event),
-        act: impl FnOnce(&mut RigidSystem, Time) -> Result<Option<Handled>, AdvanceError>,
+        act: impl FnOnce(&mut Strategy, Time) -> Result<Option<Handled>, AdvanceError>,
     ) -> Result<(), RunError> {
         self.ask_guard()?;
-        let has_failed = self.system.failure().is_some();
+        let has_failed = self.strategy.failure().is_some();
         let mut go_on = |event: &Event| {
             on_event(event);
             ControlFlow::Continue(())
         };
         let _ = self.tell_first_impact(&mut go_on);
-        let outcome = act(&mut self.system, self.now);
+        let outcome = act(&mut self.strategy, self.now);
         let outcome = outcome.map(|handled| match handled {
-            Some(handled) => tell(&mut self.told, &self.system, handled, &mut go_on),
+            Some(handled) => tell(&mut self.told, &self.strategy, handled, &mut go_on),
             None => ControlFlow::Continue(()),
         });
-        let reached = self.system.now();
+        let reached = self.strategy.now();
         if !has_failed {
             self.tell_last_words(&mut go_on);
         }

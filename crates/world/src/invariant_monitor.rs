@@ -22,6 +22,7 @@ const EARLY: f64 = 1e-6;
 
 /// Memory of the monitor, and buffers for its looks.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct InvariantMonitor {
     /// Relative accuracy asked for [-].
     pub(crate) tolerance: f64,
@@ -45,13 +46,15 @@ pub(crate) struct InvariantMonitor {
     /// Whether the last advance ended with a look that found no fault. Connectors are together and bodies apart then,
     /// for nothing moves without another advance.
     pub(crate) is_sound: bool,
-    /// The fault found, after which the world cannot go on.
-    found: Option<RunError>,
+    /// The fault found, after which the world cannot go on, and its time [s].
+    found: Option<(f64, Finding)>,
+    #[cfg_attr(feature = "save", serde(skip))]
     room: Room,
 }
 
 /// Scales of the energy of a scene [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct EnergyScales {
     /// Usual energy of the scene; 0 where nothing moves.
     pub(crate) usual: f64,
@@ -99,7 +102,10 @@ impl World {
     /// # Errors
     /// The fault that it has found.
     pub(crate) fn ask_guard(&self) -> Result<(), RunError> {
-        self.monitor.found.clone().map_or(Ok(()), Err)
+        match self.monitor.found.clone() {
+            Some((time, finding)) => Err(RunError::Astray { time, finding }),
+            None => Ok(()),
+        }
     }
 
     /// Checks the world after an advance, if the advance ended with an error or enough has happened since the last
@@ -126,9 +132,9 @@ impl World {
         self.monitor.is_sound = found.is_none();
         match found {
             Some(finding) => {
-                let error = RunError::Astray { time: self.time(), finding };
-                self.monitor.found = Some(error.clone());
-                Err(error)
+                let time = self.time();
+                self.monitor.found = Some((time, finding.clone()));
+                Err(RunError::Astray { time, finding })
             }
             None => outcome,
         }

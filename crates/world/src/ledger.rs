@@ -90,6 +90,7 @@ impl From<&Ledger> for Books {
 
 /// The energy in play in a run, as far as it was looked at: see [`World::findings`](crate::World::findings).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Turnover {
     start_potential: f64,
     /// Largest sum seen of the kinetic energy, the change of the potential energy and the work of force laws [J].

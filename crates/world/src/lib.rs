@@ -4,8 +4,8 @@
 //! from a scene file. It advances from event to event; reading it in between changes nothing. Bodies fly,
 //! collide, rest and slide on each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move them.
 //! [`Event`]s report impacts and contacts that begin or end; [`World::contact_forces`] gives the forces that hold,
-//! [`World::ledger`] where the energy went; [`World::intervene`] changes velocities from outside. Friction is not
-//! simulated yet.
+//! [`World::ledger`] where the energy went; [`World::intervene`] changes velocities from outside; `World::save` (feature
+//! `save`, on by default) writes a world to bytes, from which it goes on. Friction is not simulated yet.
 //!
 //! *Invariant*: this crate prints nothing, and leaves geometry, collisions, contacts and events to the layers below.
 //!
@@ -62,10 +62,13 @@ mod rigid_settings;
 #[cfg(feature = "scene")]
 mod run;
 mod run_error;
+#[cfg(feature = "save")]
+mod saving;
 #[cfg(feature = "scene")]
 pub mod scene;
 mod settings;
 mod start;
+mod strategy;
 mod unmeant;
 mod world;
 mod world_error;
@@ -98,6 +101,8 @@ pub use result::{EnergyResult, ResultScales, RunResult, StatisticsResult};
 #[cfg(feature = "scene")]
 pub use run::{Progress, Reached, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{Outcome, RunError};
+#[cfg(feature = "save")]
+pub use saving::{LoadError, SaveError};
 pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
 pub use world_error::{ConnectorName, WorldError};

@@ -4,9 +4,10 @@ use crate::event::{ContactForce, Event, Impact};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::invariant_monitor::InvariantMonitor;
 use crate::ledger::{Books, LawWork, Ledger, Turnover};
+use crate::strategy::Strategy;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RigidSystem, RowForce};
+use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RowForce};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
 use std::sync::Arc;
@@ -63,6 +64,7 @@ pub struct Statistics {
 
 /// Data of a body that the layers below do not hold.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Named {
     pub(crate) name: String,
     /// Centre of mass in shape coordinates [m].
@@ -75,6 +77,7 @@ pub(crate) struct Named {
 
 /// Mass and moment of inertia of a movable body.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertia {
     /// Mass [kg].
     pub mass: f64,
@@ -85,11 +88,11 @@ pub struct Inertia {
 /// Bodies in motion, made by a [`WorldBuilder`](crate::WorldBuilder) or from a scene.
 #[derive(Clone, Debug)]
 pub struct World {
-    pub(crate) system: RigidSystem,
-    bodies: Vec<Named>,
+    pub(crate) strategy: Strategy,
+    pub(crate) bodies: Vec<Named>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) now: Time,
-    warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
     pub(crate) start: Start,
     /// The last impact reported, always an `Event::Impact`: its buffers are reused.
     pub(crate) told: Event,
@@ -100,6 +103,7 @@ pub struct World {
 
 /// Corrections of the bodies before the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Start {
     /// Largest distance by which a centre of mass was moved [m].
     pub(crate) displacement: f64,
@@ -111,7 +115,7 @@ pub(crate) struct Start {
 
 /// Parts of a world, collected by its builder.
 pub(crate) struct WorldParts {
-    pub(crate) system: RigidSystem,
+    pub(crate) strategy: Strategy,
     pub(crate) bodies: Vec<Named>,
     pub(crate) connectors: Vec<Connector>,
     pub(crate) now: Time,
@@ -122,11 +126,11 @@ pub(crate) struct WorldParts {
 
 impl World {
     pub(crate) fn new(parts: WorldParts) -> Self {
-        let WorldParts { system, bodies, connectors, now, warnings, start, monitor } = parts;
+        let WorldParts { strategy, bodies, connectors, now, warnings, start, monitor } = parts;
         let told = Event::Impact(Impact::default());
-        let owes_first_impact = system.counts().impacts > 0;
+        let owes_first_impact = strategy.counts().impacts > 0;
         let mut world =
-            Self { system, bodies, connectors, now, warnings, start, told, owes_first_impact, monitor };
+            Self { strategy, bodies, connectors, now, warnings, start, told, owes_first_impact, monitor };
         world.monitor.turnover = Turnover::new(world.energy());
         world
     }
@@ -178,7 +182,7 @@ impl World {
     /// If the world has no such body, and for the background.
     #[must_use]
     pub fn shape(&self, body: BodyId) -> &Shape {
-        &self.system.trajectory(body).body().shape
+        &self.strategy.body(body).shape
     }
 
     /// Centre of mass of a body [m], in the coordinates in which its shape was given.
@@ -205,7 +209,7 @@ impl World {
     /// If the world has no such body.
     #[must_use]
     pub fn state(&self, body: BodyId) -> BodyState {
-        if body.is_world() { BodyState::default() } else { self.system.trajectory(body).state_at(self.now) }
+        if body.is_world() { BodyState::default() } else { self.strategy.state_at(body, self.now) }
     }
 
     /// Kinetic and potential energy at the present time.
@@ -221,10 +225,10 @@ impl World {
 
     /// Returns the sums of the ledger, with buffers for what they are made from.
     pub(crate) fn books(&self, booked: &mut Booked, room: &mut Vec<Moving>) -> Books {
-        self.system.write_ledger(self.now, booked);
+        self.strategy.write_ledger(self.now, booked);
         let works = |size: fn(f64) -> f64| {
             let laws = booked.laws.iter().enumerate();
-            laws.filter(|(index, _)| !self.system.has_potential(*index))
+            laws.filter(|(index, _)| !self.strategy.has_potential(*index))
                 .map(|(_, &work)| size(work))
                 .sum::<f64>()
         };
@@ -247,9 +251,10 @@ impl World {
     /// Returns the energy ledger: every change of the energy since the start, by its cause.
     #[must_use]
     pub fn ledger(&self) -> Ledger {
-        let books = self.system.ledger_at(self.now);
-        let laws = self.system.laws().iter().zip(&books.laws).enumerate();
-        let laws = laws.filter(|(index, _)| !self.system.has_potential(*index));
+        let mut books = Booked::default();
+        self.strategy.write_ledger(self.now, &mut books);
+        let laws = self.strategy.laws().iter().zip(&books.laws).enumerate();
+        let laws = laws.filter(|(index, _)| !self.strategy.has_potential(*index));
         Ledger {
             now: self.energy(),
             start: self.start.energy,
@@ -266,7 +271,7 @@ impl World {
     /// The forces of all contacts and connectors at the present time.
     #[must_use]
     pub fn contact_forces(&self) -> Vec<ContactForce> {
-        self.system.row_forces(self.now).iter().map(contact_force).collect()
+        self.strategy.row_forces(self.now).iter().map(contact_force).collect()
     }
 
     /// True if uniform gravity acts on a body.
@@ -277,8 +282,8 @@ impl World {
 
     /// The force laws that act, in the order in which they were added.
     pub fn forces(&self) -> impl Iterator<Item = &Arc<dyn ForceLaw>> {
-        let laws = self.system.laws().iter().enumerate();
-        laws.filter(|&(index, _)| self.system.is_acting(index)).map(|(_, law)| law)
+        let laws = self.strategy.laws().iter().enumerate();
+        laws.filter(|&(index, _)| self.strategy.is_acting(index)).map(|(_, law)| law)
     }
 
     /// The connectors, in the order in which they were added.
@@ -294,7 +299,7 @@ impl World {
     /// If there is no such connector.
     #[must_use]
     pub fn connector_error(&self, connector: ConnectorId) -> f64 {
-        let hint = self.system.rail_hint(connector, self.now);
+        let hint = self.strategy.rail_hint(connector, self.now);
         let connector = &self.connectors[connector.index()];
         let moving = |body: BodyId| {
             if body.is_world() { Moving::BACKGROUND } else { Moving::from(&self.state(body)) }
@@ -306,7 +311,7 @@ impl World {
     /// Thresholds of touching, given or derived from the tolerance.
     #[must_use]
     pub fn tolerances(&self) -> &Tolerances {
-        &self.system.settings().tolerances
+        &self.strategy.settings().tolerances
     }
 
     /// Relative accuracy asked for [-].
@@ -317,16 +322,16 @@ impl World {
     /// Distance [m] by which two slow bodies may sink into each other before they are put back; 0 where contacts carry
     /// forces.
     pub(crate) fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
-        self.system.room_to_sink(bodies)
+        self.strategy.room_to_sink(bodies)
     }
 
     pub(crate) fn rigid_settings(&self) -> &RigidSettings {
-        self.system.settings()
+        self.strategy.settings()
     }
 
     /// Pairs of bodies that pass through each other.
     pub(crate) fn pairs_that_pass(&self) -> &[(BodyId, BodyId)] {
-        self.system.excluded()
+        self.strategy.excluded()
     }
 
     /// Warnings from building the world, such as a gap that rounding keeps from being as small as the tolerance asks.
@@ -345,7 +350,7 @@ impl World {
     /// Counters of the run so far.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
-        let counts = self.system.counts();
+        let counts = self.strategy.counts();
         let ids = (0..).map(ConnectorId).take(self.connectors.len());
         let errors = counts.largest_connector_error.into_iter().chain(ids.map(|id| self.connector_error(id)));
         Statistics {
@@ -356,19 +361,19 @@ impl World {
             contact_solves: counts.contact_solves,
             smallest_gap: counts.smallest_gap,
             largest_connector_error: errors.reduce(f64::max),
-            remedies: self.system.remedies(),
+            remedies: self.strategy.remedies(),
         }
     }
 
     /// Largest kinetic energy [J] of a group of bodies at the end of a step or just before an impact. Looks at the
     /// present state now and then may miss it.
     pub(crate) fn largest_kinetic_energy(&self) -> f64 {
-        self.system.counts().largest_kinetic_energy
+        self.strategy.counts().largest_kinetic_energy
     }
 
     /// Number of segments of motion started so far.
     pub(crate) fn steps(&self) -> u64 {
-        self.system.counts().segments
+        self.strategy.counts().segments
     }
 }
 

@@ -1,6 +1,6 @@
 //! Errors of building a world, which name bodies and connectors.
 
-use crate::connector::kind_name;
+use crate::connector::{KindName, kind_name};
 use crate::run_error::RunError;
 use crate::world::BACKGROUND;
 use halfgap_collision::{BodyId, Connector, ConnectorError};
@@ -224,11 +224,13 @@ pub enum WorldError {
 
 /// Name of a connector in messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConnectorName {
     /// Index among the connectors, from 0.
     pub index: usize,
     /// Kind, as in scene files.
-    pub kind: &'static str,
+    #[cfg_attr(feature = "save", serde(with = "crate::saving::kind"))]
+    pub kind: KindName,
     /// Name of body a.
     pub first: String,
     /// Name of body b.

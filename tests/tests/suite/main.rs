@@ -17,6 +17,7 @@ mod reference_scenes;
 mod release;
 mod remedies;
 mod rest;
+mod saving;
 mod slots_rods_ropes;
 mod spline_rails;
 mod stacks;

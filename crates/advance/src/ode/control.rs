@@ -20,6 +20,7 @@ const TELLING_ERROR: f64 = 1e-2;
 
 /// A step that was accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Accepted {
     /// Its length [s].
     pub length: f64,

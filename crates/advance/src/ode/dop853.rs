@@ -7,9 +7,11 @@
 
 #![expect(clippy::excessive_precision, reason = "published digits, kept whole so that they can be compared")]
 
+use super::method::Method;
 use super::tableau::{Stage, Swing, Tableau, Term};
 
 pub(super) const DOP853: Tableau = Tableau {
+    method: Method::Dop853,
     stages: &STAGES,
     weights: &WEIGHTS,
     errors: &[&FIFTH_ORDER_ERROR, &THIRD_ORDER_ERROR],

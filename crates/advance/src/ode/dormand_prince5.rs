@@ -3,9 +3,11 @@
 //! Source: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
 //! 1993, II.5, table 5.2; II.6, (6.12) and the authors' program for L. F. Shampine's dense output.
 
+use super::method::Method;
 use super::tableau::{Stage, Tableau, Term};
 
 pub(super) const DORMAND_PRINCE5: Tableau = Tableau {
+    method: Method::DormandPrince5,
     stages: &STAGES,
     weights: &WEIGHTS,
     errors: &[&ERROR],

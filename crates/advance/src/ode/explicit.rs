@@ -14,7 +14,9 @@ const THIRD_ORDER_SHARE: f64 = 0.01;
 
 /// An explicit method, with its last step.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Explicit {
+    #[cfg_attr(feature = "save", serde(with = "super::saved"))]
     pub(super) tableau: &'static Tableau,
     /// Number of components of the state.
     pub(super) size: usize,

@@ -2,6 +2,7 @@
 
 /// A square matrix, row by row, and after [`Self::factorize`] its LU factors.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Factors {
     size: usize,
     entries: Vec<f64>,

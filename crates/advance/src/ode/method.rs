@@ -6,6 +6,7 @@ use super::tableau::{EULER, MODIFIED_EULER, RK4, Tableau};
 
 /// A method of integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// Dormand and Prince, order 8 with error estimates, dense output of order 7; 12 derivatives a step, 3 more for the
     /// dense output.

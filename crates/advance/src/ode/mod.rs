@@ -49,6 +49,8 @@ mod linear;
 mod method;
 mod polynomial;
 mod radau;
+#[cfg(feature = "save")]
+mod saved;
 mod start;
 mod stepper;
 mod tableau;

@@ -12,6 +12,7 @@ pub(super) const NESTED: usize = 7;
 /// motion. So the values at the start and at the end are those given, up to a few ulps and the rounding of the motion
 /// alone. Offsets [s] count from the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct SegmentPolynomial {
     /// Monomial coefficients in `s`; the first is the value at the middle.
     coefficients: [f64; DEGREE + 1],

@@ -25,8 +25,8 @@ pub struct StiffnessEstimate {
 ///
 /// Systems of any size may follow each other; only one larger than all before allocates.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stepper {
-    method: Method,
     kind: Kind,
     /// Buffer: a state at which rates are asked for.
     pub(super) trial: Vec<f64>,
@@ -35,6 +35,7 @@ pub struct Stepper {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 enum Kind {
     Explicit(Explicit),
     Implicit(Box<Radau>),
@@ -54,14 +55,17 @@ impl Stepper {
             Some(tableau) => Kind::Explicit(Explicit::new(tableau)),
             None => Kind::Implicit(Box::default()),
         };
-        Self { method, kind, trial: Vec::new(), trial_rates: Vec::new() }
+        Self { kind, trial: Vec::new(), trial_rates: Vec::new() }
     }
 
     /// Method of the steps.
     #[must_use]
     #[inline]
     pub fn method(&self) -> Method {
-        self.method
+        match &self.kind {
+            Kind::Explicit(explicit) => explicit.tableau.method,
+            Kind::Implicit(_) => Method::RadauIia5,
+        }
     }
 
     /// Sets the errors that are just acceptable, one per component as in [`error_norm`](Self::error_norm), for an

@@ -14,6 +14,8 @@
 //!
 //! Here `c2`, `c3`, `c4` make it the cubic of Hermite, and the others are weighted sums of the stages times the step.
 
+use super::method::Method;
+
 /// A stage and the weight of its rates.
 pub(super) type Term = (usize, f64);
 
@@ -35,6 +37,8 @@ pub(super) struct Swing {
 /// The coefficients of a method.
 #[derive(Debug)]
 pub(super) struct Tableau {
+    /// The method whose coefficients they are.
+    pub(super) method: Method,
     /// Stages 1, 2, ...
     pub(super) stages: &'static [Stage],
     /// Weights that give the end state.
@@ -63,8 +67,9 @@ impl Tableau {
     }
 }
 
-const fn fixed(stages: &'static [Stage], weights: &'static [Term]) -> Tableau {
+const fn fixed(method: Method, stages: &'static [Stage], weights: &'static [Term]) -> Tableau {
     Tableau {
+        method,
         stages,
         weights,
         errors: &[],
@@ -76,14 +81,15 @@ const fn fixed(stages: &'static [Stage], weights: &'static [Term]) -> Tableau {
 }
 
 /// Euler's method: along the rates at the start.
-pub(super) const EULER: Tableau = fixed(&[], &[(0, 1.0)]);
+pub(super) const EULER: Tableau = fixed(Method::Euler, &[], &[(0, 1.0)]);
 
 /// Heun's method: along the mean of the rates at the start and at the end of a step of Euler (K. Heun 1900).
 pub(super) const MODIFIED_EULER: Tableau =
-    fixed(&[Stage { node: 1.0, terms: &[(0, 1.0)] }], &[(0, 0.5), (1, 0.5)]);
+    fixed(Method::ModifiedEuler, &[Stage { node: 1.0, terms: &[(0, 1.0)] }], &[(0, 0.5), (1, 0.5)]);
 
 /// The classical method of order 4 (W. Kutta 1901).
 pub(super) const RK4: Tableau = fixed(
+    Method::Rk4,
     &[
         Stage { node: 0.5, terms: &[(0, 0.5)] },
         Stage { node: 0.5, terms: &[(1, 0.5)] },

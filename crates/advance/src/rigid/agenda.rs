@@ -7,6 +7,7 @@ use halfgap_collision::{BodyId, ConnectorId};
 
 /// Source of an event. The queue takes events of one time in the order of these variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Source {
     /// A body leaves its box.
     Box(BodyId),
@@ -22,6 +23,7 @@ pub(crate) enum Source {
 
 /// Numbers of bodies and of connectors, which fix the numbers of all sources.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Sources {
     bodies: u32,
     connectors: u32,
@@ -63,6 +65,7 @@ impl Sources {
 
 /// The queue of events by their sources.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Agenda {
     queue: EventQueue,
     sources: Sources,

@@ -2,6 +2,7 @@
 
 /// Disjoint sets of the places from 0 on.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Forest {
     /// For each place another place of its set, itself at the root.
     parents: Vec<usize>,

@@ -65,3 +65,5 @@ pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
 pub use settings::{ExtraAcceleration, RigidSettings, StepControl};
 pub use system::RigidSystem;
+#[cfg(feature = "save")]
+pub use system::SavedSystem;

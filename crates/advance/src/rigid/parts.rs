@@ -68,6 +68,14 @@ pub enum PartsError {
         /// Error of the connector.
         source: ConnectorError,
     },
+    /// A saved system is given another number of force laws than it had.
+    #[error("{given} force laws are given to a saved system that had {count}")]
+    OtherLaws {
+        /// Number of laws given.
+        given: usize,
+        /// Number of laws that the system had.
+        count: usize,
+    },
     /// A setting is out of range.
     #[error("{setting} must be {rule}, got {value}")]
     BadSetting {

@@ -117,6 +117,7 @@ const COUNT: usize = Remedy::ALL.len();
 
 /// A set of remedies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RemedySet(u64);
 
 impl RemedySet {
@@ -162,6 +163,7 @@ impl RemedyCounts {
 
 /// The remedies of a system: which are off, and how often each has acted.
 #[derive(Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Remedies {
     without: RemedySet,
     acted: [AtomicU64; COUNT],

@@ -7,6 +7,7 @@ use halfgap_contact::{ImpactLaw, ImpactOrder};
 
 /// Settings of a system: how contacts are judged, impacts resolved, and motions integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidSettings {
     /// Thresholds of touching.
     pub tolerances: Tolerances,
@@ -44,6 +45,7 @@ pub struct RigidSettings {
 
 /// Control of the steps of groups: their acceptable errors and their bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepControl {
     /// Error that one step may make, relative to `length` and to the speed of the group.
     pub local_error: f64,
@@ -59,6 +61,7 @@ pub struct StepControl {
 /// Correction of drift by an additional acceleration of each held gap: an older remedy, kept for scenes recorded with
 /// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExtraAcceleration {
     /// Time constant [s] of the decay: critically damped for gaps, if they are corrected; else exponential for their
     /// rates.

@@ -19,6 +19,8 @@ use crate::rigid::event::intervention::{
 };
 use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::event::work::EventWork;
+#[cfg(feature = "save")]
+use crate::rigid::parts::PartsError;
 use crate::rigid::parts::{RigidParts, check_bodies_of_law};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::RemedyCounts;
@@ -26,11 +28,14 @@ use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::room_to_sink;
 use crate::system::EventDriven;
 use crate::time::Time;
-use halfgap_collision::{BodyId, ConnectorId, RailHint};
+use halfgap_collision::{BodyId, Connector, ConnectorId, RailHint};
 use std::sync::Arc;
 
 /// System of rigid bodies that fly, collide, rest on each other, and are tied by connectors.
+///
+/// With the feature `save` it can be serialised without its force laws, and read back as a [`SavedSystem`].
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize))]
 pub struct RigidSystem {
     rooms: Rooms,
 }
@@ -147,6 +152,13 @@ impl RigidSystem {
     #[must_use]
     pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
         &self.rooms.assembly.laws().all
+    }
+
+    /// Connectors, in the order of their ids.
+    #[must_use]
+    #[inline]
+    pub fn connectors(&self) -> &[Connector] {
+        self.rooms.connectors.all()
     }
 
     /// Place on its path near which the point of a rail or of a rail's stop is sought at a time, which must not be
@@ -294,5 +306,30 @@ impl EventDriven for RigidSystem {
 
     fn arrive(&mut self) {
         finish(&mut self.rooms);
+    }
+}
+
+/// A system that was saved, which waits for its force laws.
+#[cfg(feature = "save")]
+#[derive(Debug, serde::Deserialize)]
+pub struct SavedSystem {
+    rooms: Rooms,
+}
+
+#[cfg(feature = "save")]
+impl SavedSystem {
+    /// The system as it was when it was saved, given the force laws that it had, all of [`RigidSystem::laws`]: it goes on
+    /// with the same bits, in a build of the same version.
+    ///
+    /// # Errors
+    /// Laws that are too many, too few, or name a body that is not there.
+    pub fn with_laws(self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<RigidSystem, PartsError> {
+        let mut system = RigidSystem { rooms: self.rooms };
+        let count = system.body_count();
+        for (index, law) in laws.iter().enumerate() {
+            check_bodies_of_law(index, law.as_ref(), count)?;
+        }
+        system.rooms.assembly.restore_laws(laws)?;
+        Ok(system)
     }
 }

@@ -8,6 +8,7 @@ use halfgap_geometry::Aabb;
 
 /// A tree of boxes over at least one piece.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct BoxTree {
     boxes: Vec<Aabb>,
     count: usize,
@@ -62,6 +63,7 @@ impl BoxTree {
 
 /// A node: its place in the list of boxes, and the first and the number of the pieces under it.
 #[derive(Clone, Copy)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Node {
     place: usize,
     first: usize,

@@ -11,6 +11,7 @@ const SOUND_CORRECTION: f64 = 0.5;
 
 /// The cubic Q(u) = from + u (slope + u (bend + u twist)) [m] for u from 0 to `width` [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cubic {
     /// Point at u = 0 [m].
     pub(super) from: DVec2,

@@ -19,6 +19,7 @@ pub(super) const NEARER: f64 = 0.5;
 
 /// A path of edges. An open one has its two straight continuations as first and last piece.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct EdgePath {
     pieces: Vec<EdgePiece>,
     closed: bool,

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 /// A piece of a path; places along it are measured from its first point [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct EdgePiece {
     curve: PieceCurve,
     /// Arc length of the path at the piece's place 0 [m].
@@ -16,6 +17,7 @@ pub(super) struct EdgePiece {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 enum PieceCurve {
     Straight {
         from: DVec2,

@@ -40,6 +40,7 @@ const UNIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Index of a connector in its world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConnectorId(pub u32);
 
 impl ConnectorId {
@@ -53,6 +54,7 @@ impl ConnectorId {
 
 /// An end of a connector.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor {
     /// Id of the body; [`BodyId::WORLD`] for the background.
     pub body: BodyId,
@@ -62,6 +64,7 @@ pub struct Anchor {
 
 /// Frame in which the direction of a slot is fixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum SlotFrame {
     /// The direction turns with body a.
     A,
@@ -74,6 +77,7 @@ pub enum SlotFrame {
 
 /// Kind of a connector, with its points and numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum ConnectorKind {
     /// Keeps two points together.
     Pin {
@@ -135,6 +139,7 @@ pub enum ConnectorKind {
 
 /// A connector of two bodies, or of a body and the world.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Connector {
     /// Kind of the connector, with its points and numbers.
     pub kind: ConnectorKind,

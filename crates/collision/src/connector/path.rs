@@ -14,11 +14,13 @@ pub(super) const SAME_PLACE: f64 = 1e-12;
 
 /// The path of a rail, fixed in the world.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RailPath {
     curve: Curve,
 }
 
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 enum Curve {
     Edges(EdgePath),
     Spline(Spline),
@@ -55,6 +57,7 @@ pub(super) struct Foot {
 
 /// Place on a path near which to search the nearest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RailHint {
     pub(super) piece: u32,
     pub(super) parameter: f64,
@@ -67,6 +70,7 @@ pub struct RailHint {
 
 /// A joint of two pieces of a path, at which its curvature, or even its direction, may jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RailKnot {
     /// Arc length from the path's first point [m].
     pub arc_length: f64,

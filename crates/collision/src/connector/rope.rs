@@ -14,6 +14,7 @@ use halfgap_geometry::{DirectionRange, Feature, PairKind, RoundFeature};
 
 /// A rope between points of two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rope {
     /// Point of body a [m], in body coordinates.
     pub point_a: DVec2,

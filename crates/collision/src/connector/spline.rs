@@ -28,6 +28,7 @@ const PASSED: f64 = 1.0 / 128.0;
 
 /// A cubic spline.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Spline {
     pub(super) pieces: Vec<Cubic>,
     /// Equal parts of the pieces, each of which turns little, in order.
@@ -41,6 +42,7 @@ pub(super) struct Spline {
 
 /// A part of a piece that turns little.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Span {
     pub(super) piece: usize,
     /// Parameters at the ends of the span [m].

@@ -12,6 +12,7 @@ type Tile = [Lanes; SIDE];
 
 /// L below its diagonal of ones, and the reciprocals of D.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Factor {
     /// First column of tiles of each row of tiles.
     lead: Vec<usize>,

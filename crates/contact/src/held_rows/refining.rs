@@ -19,6 +19,7 @@ const WORTHWHILE: f64 = 0.5;
 
 /// Buffers of a refinement, one number per row.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Refining {
     /// Residual A f + b of the forces.
     residual: Vec<f64>,

@@ -6,6 +6,7 @@ use crate::problem::InverseInertia;
 
 /// An earlier row on a common body.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Shared {
     /// The side of that row that has the body: twice its place, plus 1 for the normal side.
     pub(super) side: u32,

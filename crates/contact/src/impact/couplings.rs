@@ -11,6 +11,7 @@ const NONE: u32 = u32::MAX;
 
 /// Entries of A, each row's in ascending order of column.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Couplings {
     /// Where each row's entries begin in `entries`, and where the last row's end.
     start: Vec<usize>,

@@ -7,11 +7,13 @@ use super::shuffle::Shuffle;
 use super::{Impact, NOISE};
 use crate::check::Residuals;
 use crate::row::CollisionRow;
+use crate::words::{self, Words};
 use halfgap_collision::geometry::Rounded;
 
 /// Rule by which the rows of an impact are solved together or one after another. Rows at rest that no motion can open, those
 /// of a body that fits exactly between others, are solved with each row that reaches them, by every law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum ImpactLaw {
     /// All rows that close or rest in one problem, with all connectors; repeated while rows still close.
     Simultaneous,
@@ -32,6 +34,7 @@ pub enum ImpactLaw {
 
 /// Order in which the laws that solve rows one after another select the next row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum ImpactOrder {
     /// The row that closes fastest first (a bilateral row counts with the size of its rate). Among rows within 1e-9 of
     /// the fastest, relative to it, the last in the list. That choice is arbitrary but fixed: rounding does not decide
@@ -44,6 +47,7 @@ pub enum ImpactOrder {
 
 /// An impact that could not be resolved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ImpactError {
     /// The numbers of a row are not those of a constraint between two bodies.
@@ -52,7 +56,8 @@ pub enum ImpactError {
         /// Index of the row.
         row: usize,
         /// The rule that the numbers break.
-        rule: &'static str,
+        #[cfg_attr(feature = "save", serde(with = "crate::words"))]
+        rule: Words,
     },
     /// A row closes, but neither of its bodies can move.
     #[error("row {row} closes at {} m/s, but neither of its bodies can move", Rounded(*closing))]
@@ -243,13 +248,13 @@ impl Impact {
             let sum = row.rate + row.velocity_tol + row.response.iter().sum::<f64>();
             let is_finite = (sum + row.jacobian.iter().sum::<f64>()).is_finite();
             if !row.kind.is_plain() {
-                Some("impact laws take unilateral and bilateral rows only")
+                Some(words::PLAIN_ONLY)
             } else if !is_finite {
-                Some("rate, velocity_tol, jacobian and response must be finite")
+                Some(words::FINITE_ONLY)
             } else if !(0.0..=1.0).contains(&row.elasticity) {
-                Some("elasticity must be between 0 and 1")
+                Some(words::ELASTICITY_RANGE)
             } else if row.jacobian.iter().zip(&row.response).any(|(entry, response)| entry * response < 0.0) {
-                Some("a response must be that of inverse masses and moments that are not negative")
+                Some(words::RESPONSE_SIGN)
             } else {
                 None
             }

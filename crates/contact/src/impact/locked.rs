@@ -16,6 +16,7 @@ use halfgap_collision::BodyId;
 
 /// Part of a row in the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 enum Part {
     /// It moves, or can be opened.
     #[default]
@@ -28,6 +29,7 @@ enum Part {
 
 /// The search for locked rows, and its buffers.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Locked {
     /// One flag per row: true if it is locked. Empty if none is.
     rows: Vec<bool>,

@@ -52,6 +52,7 @@ pub(super) enum Beginning<'a> {
 
 /// The problem of some rows of an impact, with its solver.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct ManyRows {
     solver: DualActiveSet,
     /// The default `inconsistency` and `pivots_per_row` of the solver, which each problem adapts.

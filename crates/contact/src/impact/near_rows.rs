@@ -29,6 +29,7 @@ const PIVOTS: usize = 8;
 
 /// A small problem A f + b >= 0, f >= 0, f.(A f + b) = 0, with A f + b = 0 on bilateral rows.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NearRows {
     directions: Vec<Direction>,
     /// A (n, n) [1/kg], by rows, of n rows.
@@ -55,6 +56,7 @@ pub(super) struct NearRows {
 
 /// Direction in which a row moves its two bodies.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Direction {
     bodies: [u32; 2],
     /// J M^-1/2 [1/sqrt(kg)].

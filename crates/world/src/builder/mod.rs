@@ -12,6 +12,7 @@ use crate::rigid_settings::{rigid_settings, tolerances};
 use crate::run_error::RunError;
 use crate::settings::WorldSettings;
 use crate::start::{Corrected, StartRules, correct_start};
+use crate::strategy::Strategy;
 use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
 use crate::world_error::{ConnectorName, WorldError};
 pub(crate) use checks::LARGEST;
@@ -19,7 +20,7 @@ use checks::world_bounds;
 use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{BodyPart, FreeMotion, RigidParts, RigidSystem, Scales};
+use halfgap_advance::rigid::{BodyPart, FreeMotion, RigidParts, Scales};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
@@ -263,10 +264,10 @@ impl WorldBuilder {
         let settings = rigid_settings(&self.settings, &scales, tolerances);
         let parts =
             RigidParts { bodies, connectors: connectors.clone(), laws: self.forces, excluded: self.excluded };
-        let system = RigidSystem::new(parts, settings, now).map_err(|error| WorldError::Start {
+        let strategy = Strategy::events(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(WorldParts { system, bodies: named, connectors, now, warnings, start, monitor }))
+        Ok(World::new(WorldParts { strategy, bodies: named, connectors, now, warnings, start, monitor }))
     }
 
     /// Sets to 0 the speeds whose squares would underflow.

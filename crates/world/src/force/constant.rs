@@ -6,7 +6,8 @@ use halfgap_collision::BodyId;
 
 /// The frame in which a constant force and its point are given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(any(feature = "save", feature = "scene"), derive(serde::Deserialize, serde::Serialize))]
+#[cfg_attr(any(feature = "save", feature = "scene"), serde(rename_all = "snake_case"))]
 pub enum ForceFrame {
     /// Force and point turn with the body. In code the origin is the centre of mass, in scene files that of the
     /// shape's coordinates.
@@ -21,6 +22,7 @@ pub enum ForceFrame {
 /// It has no potential. In the body's frame the force turns with the body; in the world's frame its torque depends on
 /// the position of the body while the force does not depend on the angle: neither is a gradient.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConstantForce {
     name: String,
     body: [BodyId; 1],
@@ -29,6 +31,7 @@ pub struct ConstantForce {
 
 /// Force, its point and torque of a [`ConstantForce`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Push {
     /// Frame of the point and the force.
     pub frame: ForceFrame,

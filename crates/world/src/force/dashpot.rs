@@ -8,6 +8,7 @@ use halfgap_collision::{Anchor, BodyId};
 ///
 /// Where the points coincide the line has no direction, and the dashpot exerts no force.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Dashpot {
     name: String,
     ends: [Anchor; 2],

@@ -9,6 +9,7 @@ use halfgap_collision::BodyId;
 /// One law holds for all of them: every body pulls every other, so they share their steps anyway. It has the potential
 /// -sum G m1 m2/r [J]. Two centres at one point, where neither force nor potential exists, do not attract each other.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct MutualGravity {
     name: String,
     /// G [m^3/(kg s^2)].

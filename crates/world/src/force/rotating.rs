@@ -9,6 +9,7 @@ use halfgap_geometry::Rotation;
 ///
 /// At time t its angle to the body's x axis is phase + rate (t - start), counter-clockwise. It has no potential.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RotatingForce {
     name: String,
     body: [BodyId; 1],
@@ -18,6 +19,7 @@ pub struct RotatingForce {
 
 /// Size, rate and phase of a [`RotatingForce`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Turning {
     /// Size of the force [N]; a negative one points the other way.
     pub magnitude: f64,

@@ -10,6 +10,7 @@ use halfgap_collision::{Anchor, BodyId};
 /// It has the potential stiffness (length - rest length)^2/2 [J]. Where its points coincide it has no direction and
 /// exerts no force; with a rest length of 0 that is the limit from all sides.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spring {
     name: String,
     ends: [Anchor; 2],

@@ -34,7 +34,7 @@ pub use field_path::{BadFieldPath, FieldPath, Step};
 pub use force::{
     ConstantData, DampingData, ForceData, GravityData, MutualGravityData, RotatingData, SpringData,
 };
-pub use run_data::RunData;
+pub use run_data::{RunData, StrategyData};
 pub use shape::{
     ArcData, BlockData, DiscData, EdgeData, OutlineData, PathData, PolygonData, RingData, RoundedBlockData,
     ShapeData,

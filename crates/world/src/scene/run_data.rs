@@ -21,6 +21,9 @@ pub struct RunData {
     /// Relative accuracy asked for [-], above 0 and at most 1.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
+    /// How the world advances.
+    #[serde(default)]
+    pub strategy: StrategyData,
     /// Impact law.
     #[serde(default, with = "ImpactLawNames")]
     pub impact_law: ImpactLaw,
@@ -65,6 +68,17 @@ impl RunData {
     pub fn output_step_or_default(&self) -> f64 {
         self.output_step.unwrap_or(self.duration / DEFAULT_OUTPUTS)
     }
+}
+
+/// How a world advances, in a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StrategyData {
+    /// Each event at its own time.
+    #[default]
+    Events,
+    /// Time stepping; not supported yet.
+    Steps,
 }
 
 /// The impact laws by their names in scene files.

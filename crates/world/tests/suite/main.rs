@@ -13,6 +13,8 @@ mod pictures;
 mod recordings;
 #[cfg(feature = "scene")]
 mod refusals;
+#[cfg(feature = "save")]
+mod saving;
 #[cfg(feature = "scene")]
 mod scene_files;
 mod start;

@@ -68,6 +68,7 @@ fn arrays_are_no_tables_and_tables_no_names() {
     insta::assert_snapshot!(message_with("[[expected]]\ntime = 1.0\n[expected.bodies]\nball = 3"), @"line 18: expected[0].bodies.ball: invalid type: integer `3`, expected a table");
     insta::assert_snapshot!(message("duration = 1.0", "duration = 1.0\nimpact_law = { hybrid = [] }"), @"line 5: run.impact_law: invalid type: table, expected a string");
     insta::assert_snapshot!(message("duration = 1.0", "duration = 1.0\nimpact_law = 3"), @"line 5: run.impact_law: invalid type: integer `3`, expected a string");
+    insta::assert_snapshot!(message("duration = 1.0", "duration = 1.0\nstrategy = 3"), @"line 5: run.strategy: invalid type: integer `3`, expected a string");
     insta::assert_snapshot!(message("[run]\nduration = 1.0", "run = [1.0]"), @"line 3: run: invalid type: array, expected a table");
     let error = SceneSource::new("[]", SceneFormat::Json).parse().expect_err("an array");
     insta::assert_snapshot!(error.to_string(), @"line 1: invalid type: array, expected a table");

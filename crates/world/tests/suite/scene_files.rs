@@ -181,11 +181,13 @@ fn json_messages_have_lines_too() {
 
 #[test]
 fn what_is_not_simulated_yet_is_refused_by_name() {
-    let source =
-        SceneSource::new(GOOD.replacen("mass = 1.0", "mass = 1.0\nfriction = 0.3", 1), SceneFormat::Toml);
-    let scene = source.parse().expect("a valid scene");
-    let refusal = source.locate(scene.check_supported().expect_err("not supported")).to_string();
-    insta::assert_snapshot!(refusal, @"line 17: body[1].friction: friction is not supported yet");
+    let refusal = |from: &str, to: &str| {
+        let source = SceneSource::new(GOOD.replacen(from, to, 1), SceneFormat::Toml);
+        let scene = source.parse().expect("a valid scene");
+        source.locate(scene.check_supported().expect_err("not supported")).to_string()
+    };
+    insta::assert_snapshot!(refusal("mass = 1.0", "mass = 1.0\nfriction = 0.3"), @"line 17: body[1].friction: friction is not supported yet");
+    insta::assert_snapshot!(refusal("duration = 2.0", "duration = 2.0\nstrategy = \"steps\""), @r#"line 6: run.strategy: the strategy "steps" is not supported yet"#);
 }
 
 #[test]
@@ -196,6 +198,7 @@ fn all_else_in_the_format_is_simulated() {
         ("duration = 2.0", "duration = 2.0\nintegrator = \"rk4\""),
         ("duration = 2.0", "duration = 2.0\nintegrator = \"euler\""),
         ("duration = 2.0", "duration = 2.0\nstabilization = \"velocity\""),
+        ("duration = 2.0", "duration = 2.0\nstrategy = \"events\""),
         ("gravity = { acceleration = [0.0, -9.81] }", "mutual_gravity = { strength = 1 }"),
         ("gravity = { acceleration = [0.0, -9.81] }", spring),
         ("[[force]]", rod),

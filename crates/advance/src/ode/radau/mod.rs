@@ -35,6 +35,7 @@ const LEAST_DIFFERENCE: f64 = 1e6 * f64::EPSILON;
 
 /// The implicit method, with its last step.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Radau {
     /// Number of components of the state.
     size: usize,

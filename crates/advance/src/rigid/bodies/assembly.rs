@@ -13,6 +13,7 @@ use halfgap_contact::InverseInertia;
 
 /// Facts about the segment that bodies of a group share, as the rest of the system needs them.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Shared {
     /// Time at which the segment ends.
     pub(crate) end: Time,
@@ -24,8 +25,10 @@ pub(crate) struct Shared {
 
 /// All bodies with their motions at the present time.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Assembly {
     pub(super) settings: RigidSettings,
+    #[cfg_attr(feature = "save", serde(deserialize_with = "crate::rigid::bodies::saved::trajectories"))]
     pub(super) trajectories: Vec<Trajectory>,
     pub(super) remedies: Remedies,
     /// True for bodies that cannot move.

@@ -4,6 +4,7 @@ use halfgap_collision::BodyId;
 
 /// Lists of items, connectors or force laws, by body.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ByBody<T> {
     /// Index in `items` of the first item of each body, and behind them the end of the last.
     starts: Vec<u32>,

@@ -8,6 +8,7 @@
 use crate::rigid::bodies::trajectory::Trajectory;
 use glam::DVec2;
 use halfgap_collision::{Anchor, BodyId, Moving};
+use std::any::Any;
 use std::fmt::Debug;
 
 /// Poses and velocities of all bodies at one moment, for a law to read.
@@ -55,6 +56,7 @@ impl<'a> Snapshot<'a> {
 
 /// Force and torque on a body, in the world frame; a positive torque acts counter-clockwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Wrench {
     /// Force at the centre of mass [N].
     pub force: DVec2,
@@ -102,7 +104,7 @@ impl<'a> Wrenches<'a> {
 /// A body must not stay where a law changes branch, pressed there from both sides, as under dry friction: it would take a
 /// step for each crossing. Change the parameters of a law only together with an intervention on one of its bodies,
 /// which restarts their steps; a change of velocity by zero will do.
-pub trait ForceLaw: Debug + Send + Sync {
+pub trait ForceLaw: Any + Debug + Send + Sync {
     /// Name of the law in messages and in the energy ledger.
     fn name(&self) -> &str;
 

@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 /// All force laws; a law is named by its place among them.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Laws {
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) all: Vec<Arc<dyn ForceLaw>>,
     /// Whether each law acts; one that was removed does not.
     is_on: Vec<bool>,
@@ -42,6 +44,12 @@ impl Laws {
     pub(crate) fn remove(&mut self, law: usize) {
         self.is_on[law] = false;
         self.list_by_body();
+    }
+
+    /// Number of laws, those that were removed and those that have yet to be put back after loading included.
+    #[cfg(feature = "save")]
+    pub(super) fn count(&self) -> usize {
+        self.is_on.len()
     }
 
     /// True for a law that acts, false for one that was removed or is not there.

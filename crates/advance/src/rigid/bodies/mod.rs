@@ -6,7 +6,7 @@
 //!
 //! `assembly`: all bodies, what others ask first · `trajectory`: one body and its segment · `path`: the motion along it ·
 //! `thresholds`: what counts as rest, and as deep · `law`, `laws`, `by_body`: force laws and where they act · `squeezed`:
-//! masses too different to be held together · `instant`: when two events are at one time.
+//! masses too different to be held together · `instant`: when two events are at one time · `saved`: bodies and laws that were saved.
 
 pub(super) mod assembly;
 pub(super) mod by_body;
@@ -14,6 +14,8 @@ pub(super) mod instant;
 pub(super) mod law;
 pub(super) mod laws;
 pub(super) mod path;
+#[cfg(feature = "save")]
+mod saved;
 pub(super) mod squeezed;
 pub(super) mod thresholds;
 pub(super) mod trajectory;

@@ -27,6 +27,7 @@ pub(crate) fn largest(x: Spread, y: Spread) -> f64 {
 
 /// Dense output: polynomials in time for the centre of mass and the angle.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DensePath {
     x: SegmentPolynomial,
     y: SegmentPolynomial,
@@ -45,6 +46,7 @@ pub(crate) struct DensePath {
 /// Answers that the searches of all pairs of a body need first: its motion at the start and in the middle of its
 /// segment, and bounds along all of it.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Known {
     /// Length of the segment [s].
     span: f64,

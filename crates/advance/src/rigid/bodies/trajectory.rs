@@ -5,6 +5,8 @@ use crate::rigid::bodies::path::{DensePath, Path};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
+#[cfg(feature = "save")]
+use halfgap_geometry::ShapePool;
 use std::f64::consts::TAU;
 
 /// Difference [rad] between a full turn 2π and [`TAU`], the nearest floating-point number.
@@ -32,6 +34,7 @@ impl FreeMotion {
 
 /// A body and its segment: its present motion and the start of it.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[repr(align(64))]
 pub struct Trajectory {
     start: Time,
@@ -59,6 +62,12 @@ impl Trajectory {
         };
         let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
         Self { start: time, flight, reach, disc, body, turns: 0.0, is_integrated: false, dense: None }
+    }
+
+    /// Takes a shape that is equal to its own from a pool, or leaves its own there.
+    #[cfg(feature = "save")]
+    pub(super) fn share_shape(&mut self, pool: &mut ShapePool) {
+        self.body.shape = pool.share(self.body.shape.clone());
     }
 
     /// The body.

@@ -9,6 +9,7 @@ use crate::time::Time;
 
 /// Counts, ledger and report of a system.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Books {
     pub(super) counts: Counts,
     pub(super) ledger: Ledger,

@@ -2,6 +2,7 @@
 
 /// Counts and extremes of a system since its start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counts {
     /// Segments started: flights of bodies, and steps of groups.
     pub segments: u64,

@@ -4,6 +4,7 @@ use crate::rigid::group::state::Work;
 
 /// Changes of energy [J] since the start by cause, each negative where energy was lost.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ledger {
     /// Impacts with elasticity.
     pub impacts: f64,

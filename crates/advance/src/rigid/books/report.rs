@@ -8,6 +8,7 @@ use halfgap_geometry::FeatureId;
 
 /// Force of one held row: a contact, or one direction of a connector.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowForce {
     /// The primary and the normal body.
     pub bodies: [BodyId; 2],
@@ -34,6 +35,7 @@ impl RowForce {
 
 /// Outcome of the last event, for callers that ask.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Told {
     pub(super) last_impact: ImpactReport,
     /// True if the event contained an impact.
@@ -47,6 +49,7 @@ pub(crate) struct Told {
 
 /// Unilateral rows (contacts, ropes, stops) whose holding begins or ends in one event.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactChanges {
     /// Time of the event.
     pub time: Time,
@@ -116,6 +119,7 @@ pub struct Handled {
 
 /// Report of one row of an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowReport {
     /// Collision record of the row, with its impulse.
     pub collision: Collision,
@@ -129,6 +133,7 @@ pub struct RowReport {
 
 /// Report of an impact.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ImpactReport {
     /// Time of the impact.
     pub time: Time,

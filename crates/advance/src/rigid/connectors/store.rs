@@ -11,6 +11,7 @@ use halfgap_collision::{
 
 /// All connectors with their states, and lists of them by body.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Connectors {
     pub(super) all: Vec<Connector>,
     /// Connectors of each body.
@@ -37,6 +38,7 @@ impl Connectors {
 
 /// State of a connector.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ConnectorState {
     /// Place of its point on a rail.
     pub(super) hint: Option<RailHint>,
@@ -196,6 +198,7 @@ pub(crate) fn rope_of(connector: &Connector) -> Option<Rope> {
 
 /// A stop of a rail that is not held.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stop {
     pub(crate) id: ConnectorId,
     /// Piece of the rail.

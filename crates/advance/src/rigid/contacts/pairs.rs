@@ -10,10 +10,12 @@ use halfgap_geometry::FeatureId;
 
 /// Index of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairId(pub(crate) u32);
 
 /// Prediction of a pair's next contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Prediction {
     /// Contact of these features, at the time until which the pair is clear.
     Contact([FeatureId; 2]),
@@ -25,6 +27,7 @@ pub(crate) enum Prediction {
 
 /// State of a pair of bodies: all that every prediction reads, and no more, within a cache line.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[repr(align(32))]
 pub(crate) struct Pair {
     /// Time before which there is no contact.
@@ -39,6 +42,7 @@ pub(crate) struct Pair {
 
 /// A pair as one of its bodies sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Link {
     pub(crate) pair: PairId,
     pub(crate) other: BodyId,
@@ -46,6 +50,7 @@ pub(crate) struct Link {
 
 /// Contacts of a pair, and counts of its events.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairPast {
     contacts: Contacts,
     /// Number of contacts handled without time going by since the first of them.
@@ -66,6 +71,7 @@ impl PairPast {
 
 /// All pairs, and lists of them by body.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pairs {
     pairs: Vec<Pair>,
     /// The bodies of each pair, the lesser first.

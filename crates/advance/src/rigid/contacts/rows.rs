@@ -18,6 +18,7 @@ pub(crate) const CHANGE_SHARE: f64 = 1.0 / 64.0;
 
 /// Origin of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum RowSource {
     /// A feature of the primary and one of the normal body.
     Contact([FeatureId; 2]),
@@ -27,6 +28,7 @@ pub(crate) enum RowSource {
 
 /// A held row: its gap is kept as it is.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct HeldRow {
     pub(crate) source: RowSource,
     /// The primary and the normal body.

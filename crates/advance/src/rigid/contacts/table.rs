@@ -24,6 +24,7 @@ const MOST_SEEN: usize = 16;
 
 /// Mode of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Mode {
     /// It carries no force; the search tells when it fires, at this gap [m].
     Open(f64),
@@ -37,6 +38,7 @@ pub(crate) enum Mode {
 
 /// A contact of two features.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Contact {
     /// Features of the lesser body and of the other.
     features: [FeatureId; 2],
@@ -48,6 +50,7 @@ struct Contact {
 
 /// State of two features at the last event in which they touched.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Seen {
     pub(crate) time: Time,
     /// Gap [m].
@@ -65,6 +68,7 @@ pub(crate) struct Seen {
 
 /// Contacts of a pair of bodies, at most one of the same features. Those seen last come last.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Contacts {
     list: Vec<Contact>,
     /// The modes as rules of the search.

@@ -5,6 +5,7 @@ use halfgap_geometry::FeatureId;
 
 /// A pair of features that touches, the lesser body first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Touch {
     pub(crate) bodies: [BodyId; 2],
     pub(crate) features: [FeatureId; 2],

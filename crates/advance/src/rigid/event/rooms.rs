@@ -25,6 +25,7 @@ use halfgap_collision::Moving;
 
 /// The parts of a system, each with its own room.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rooms {
     pub(crate) assembly: Assembly,
     pub(crate) connectors: Connectors,
@@ -36,8 +37,10 @@ pub(crate) struct Rooms {
     pub(crate) books: Books,
     pub(crate) agenda: Agenda,
     /// Members of the groups that are being made.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) members: Members,
     /// Which places of a region share their steps.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) coupling: Coupling,
     /// Buffers of an event; taken out while one is handled.
     pub(crate) work: Option<Box<EventWork>>,

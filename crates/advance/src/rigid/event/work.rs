@@ -9,20 +9,29 @@ use halfgap_contact::Impact;
 
 /// Buffers of the handling of events, kept from one to the next.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct EventWork {
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) region: Region,
     pub(crate) impact: Impact,
     pub(crate) settling: Settling,
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) seeds: Vec<BodyId>,
     /// Impulses that the contacts of the region carry until its low hops have come down [N s].
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) carried: Vec<f64>,
     /// States of bodies to restore, from before contacts were stopped as bilateral ones or groups were cut.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) before: Vec<BodyState>,
     /// Report of the last impact without elasticity that stopped contacts or stilled hops.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) stop: ImpactReport,
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) lift: Lift,
     /// Number of times, beyond `CALM_REPEATS`, that the pair that fired has done so without time going by.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) repeats: u32,
     /// True if the contact that fired does not close: the search took its rounding for motion.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) fired_open: bool,
 }

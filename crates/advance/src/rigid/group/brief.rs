@@ -19,6 +19,7 @@ const BRIEF_GROWTH: f64 = 1.9;
 
 /// Experience with the last group of a body, from which its next group starts.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Past {
     /// Length [s] of the next step that was proposed, by the method asked for.
     pub(super) step: Option<f64>,

@@ -16,10 +16,12 @@ use halfgap_contact::InverseInertia;
 
 /// All groups by their leaders, and the buffers of their making.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Groups {
     /// Group of each leader.
     pub(super) by_leader: Vec<Option<Box<Group>>>,
     /// Cleared groups to be used again.
+    #[cfg_attr(feature = "save", serde(skip))]
     #[expect(clippy::vec_box, reason = "groups go from here to `by_leader` without being copied")]
     pub(super) pool: Vec<Box<Group>>,
     /// Steps and depth of each body's last group.
@@ -29,11 +31,13 @@ pub(crate) struct Groups {
     /// Leaders of the groups that were made last.
     pub(super) made: Vec<BodyId>,
     /// Bodies of the group that was extended last.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) extended: Vec<BodyId>,
     pub(super) stage: Stage,
     pub(super) steppers: Steppers,
     pub(super) error_scales: Vec<f64>,
     /// Inertias of the bodies of a group that starts.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) inertias: Vec<InverseInertia>,
 }
 

@@ -10,6 +10,7 @@ use crate::rigid::forest::Forest;
 
 /// Whether the connectors of a group close a loop.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Loops {
     /// Bodies that connectors join; the last place stands for all bodies that cannot move.
     joined: Forest,

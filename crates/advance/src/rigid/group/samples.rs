@@ -2,6 +2,7 @@
 
 /// Values of watched functions at the nodes, row by row; empty lists where nothing needs a watch.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Samples {
     pub(crate) forces: Vec<[f64; NODES]>,
     pub(crate) rooms: Vec<[f64; NODES]>,

@@ -34,6 +34,7 @@ const SHORTENING: f64 = 0.5;
 
 /// Kept shares of the rows of loops at the stages of a step.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Kept {
     /// Offset [s] of each stage, and the root of the least kept share there.
     stages: Vec<(f64, f64)>,

@@ -12,6 +12,7 @@ use halfgap_collision::{BodyAcceleration, BodyId, BodyState, MotionBounds, Movin
 
 /// Buffers for the evaluation of one moment, one set for the whole system.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stage {
     /// States of all bodies; those of movable ones are valid only while their group is evaluated.
     pub(super) movings: Vec<Moving>,

@@ -13,6 +13,7 @@ use halfgap_contact::HeldRows;
 
 /// Work of forces without a potential, which is integrated with the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Work {
     /// Of a force law.
     Law(usize),
@@ -22,6 +23,7 @@ pub(crate) enum Work {
 
 /// Event that ends a group's segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum SegmentEnd {
     /// The force of a row falls to zero.
     Release(usize),
@@ -37,6 +39,7 @@ pub(crate) enum SegmentEnd {
 
 /// Bodies with a common segment.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Group {
     /// Its bodies, ascending.
     pub(super) bodies: Vec<BodyId>,

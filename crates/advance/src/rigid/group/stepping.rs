@@ -18,6 +18,7 @@ pub(crate) enum Stepping {
 
 /// The steppers of a system.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Steppers {
     asked: Stepper,
     brief: Stepper,

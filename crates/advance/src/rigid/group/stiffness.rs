@@ -2,6 +2,7 @@
 
 /// Experience with the fastest rate of a group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stiffness {
     /// Steps are implicit.
     pub(super) is_stiff: bool,

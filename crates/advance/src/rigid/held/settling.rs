@@ -16,7 +16,9 @@ const LENIENT_RESIDUAL: f64 = 1e-6;
 
 /// Solvers for contact forces, with their buffers.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Settling {
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) problem: Problem,
     pub(super) solution: Solution,
     pub(super) solver: Auto,
@@ -29,30 +31,44 @@ pub(crate) struct Settling {
     /// Solver for contacts that contradict each other by more than rounding, but by little.
     pub(super) lenient: Auto,
     /// Indices of the records that enter the problem.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) candidates: Vec<usize>,
     /// Contacts that were left out because they act by next to no lever: they may come as near as grazing contacts.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) passing: Vec<Touch>,
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) levers: Levers,
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) redundant: Redundant,
     /// Whether each record of the region is likely to carry a force, if that is known.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) likely: Vec<Option<bool>>,
     /// For each record, true if it still opened after low hops were stilled: it leaves.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) leaving: Vec<bool>,
     /// Force [N] of each record in the last solve of the event, if it took part; before the first solve, the force at
     /// which its contact was cut.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) forces: Vec<Option<f64>>,
     /// Contacts that were cut in the event, sorted, with their forces [N].
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) ended: Vec<(Touch, f64)>,
     /// The solver's initial guess for the candidates.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) guess: WarmStart,
     /// The rows to be held, with the index of each one's record.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) held: Vec<(usize, HeldRow)>,
     /// The contacts among the rows to be held, sorted.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) touches: Vec<Touch>,
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) laws: Vec<usize>,
     /// Loads of the region's bodies [N].
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) gross: Vec<f64>,
     /// Accelerations of the region's bodies under the forces of the candidates.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) pushed: Vec<[f64; 3]>,
 }
 

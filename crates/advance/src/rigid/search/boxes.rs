@@ -28,6 +28,7 @@ const LARGEST_MARGIN: f64 = 1e80;
 
 /// Room of a body around the circle of its reach.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Room {
     /// Distance [m] that the centre of mass may move from where the box was set, along either axis.
     margin: f64,

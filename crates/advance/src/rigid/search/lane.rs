@@ -12,6 +12,7 @@ use halfgap_collision::{Flight, Motion, Polynomial};
 
 /// Kind of a body's motion, as far as its lane knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum LaneKind {
     /// Not a parabola: only the body itself knows its motion.
     Other,
@@ -23,6 +24,7 @@ pub(crate) enum LaneKind {
 
 /// A copy of the motion of one body, renewed whenever that changes. It fills two cache lines that are read together.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 #[repr(align(128))]
 pub(crate) struct Lane {
     /// Position [m] at the start; of an integrated motion, the middle of the box that holds its course.

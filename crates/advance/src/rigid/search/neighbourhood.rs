@@ -12,6 +12,7 @@ use halfgap_collision::{BodyId, BroadPhase};
 
 /// Bodies as the search sees them, with its buffers.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Neighbourhood {
     /// Motion and size of each body, as predictions read them.
     pub(super) lanes: Vec<Lane>,
@@ -25,12 +26,16 @@ pub(crate) struct Neighbourhood {
     /// True for bodies that no other body can collide with.
     pub(super) loners: Vec<bool>,
     /// Buffer: pairs whose rules or predictions an event changes.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) touched: Vec<PairId>,
     /// Buffer: links of a body.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) links: Vec<Link>,
     /// Buffer: bodies near a body.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) neighbours: Vec<BodyId>,
     /// Buffer: which of these are known already.
+    #[cfg_attr(feature = "save", serde(skip))]
     pub(super) marks: Marks,
 }
 

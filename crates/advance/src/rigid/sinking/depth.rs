@@ -7,6 +7,7 @@ use halfgap_collision::{BodyId, Tolerances, Zone};
 
 /// Contacts that wait for the next tick.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Sinking {
     /// Touches that have sunk, sorted.
     waiting: Vec<Touch>,

@@ -7,6 +7,7 @@ use halfgap_collision::BodyId;
 
 /// Recent events and steps, from which sequences that would never end are recognised.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Zeno {
     /// Recent events of each body.
     pub(super) recent: Vec<Recent>,
@@ -59,6 +60,7 @@ impl Zeno {
 
 /// Recent events of one body.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Recent {
     /// Time at which counting began; `None` if it has not.
     pub(super) since: Option<Time>,

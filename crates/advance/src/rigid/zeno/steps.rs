@@ -7,6 +7,7 @@ pub(crate) const STEPS: u32 = 10_000;
 
 /// The recent steps of a group, kept for the body that leads it.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pace {
     pub(super) all: Count<STEPS>,
     /// Number of hopeless means in succession.
@@ -15,6 +16,7 @@ pub(crate) struct Pace {
 
 /// Takes the mean length of every `STEPS` steps.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Count<const STEPS: u32> {
     /// Time at which counting began; `None` if it has not.
     since: Option<Time>,

@@ -23,6 +23,7 @@ const SOFTNESS: f64 = 1e-8;
 
 /// The rows beside the pins of a tree, with their buffers.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct LoopRows {
     /// Indices of the rows in the group.
     pub(super) rows: Vec<usize>,

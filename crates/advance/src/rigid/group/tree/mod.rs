@@ -27,6 +27,7 @@ use sweeps::Bundle;
 
 /// Support from which a body of a tree hangs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 enum Hinge {
     /// None: the body's position is among the coordinates.
     Free,
@@ -45,6 +46,7 @@ enum Hinge {
 
 /// A body of a tree, with its support.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Link {
     /// Its place in the group.
     place: usize,
@@ -66,6 +68,7 @@ struct Link {
 
 /// Arms of a body in world directions, and its angular velocity, as its equations need them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Stance {
     /// From its centre of mass to its own pin [m].
     own: DVec2,
@@ -78,6 +81,7 @@ struct Stance {
 /// Index, among a group's positions, of each coordinate of the tree: link by link, the angle, then the position of a
 /// free one.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Numbers(Vec<usize>);
 
 /// Numbers of rows beside the pins of a tree that close more than one loop, but few. At bifurcation points, steps in
@@ -87,6 +91,7 @@ const ROWS_OF_FEW_LOOPS: std::ops::RangeInclusive<usize> = 3..=6;
 /// The bodies of a group as a tree, with its buffers. Without links there is no tree, and the group is stepped in the
 /// coordinates of its bodies.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct JointTree {
     /// Parents come before their children.
     links: Vec<Link>,

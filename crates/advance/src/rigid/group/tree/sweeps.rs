@@ -21,6 +21,7 @@ use glam::DVec2;
 
 /// A symmetric matrix of order 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Symmetric {
     xx: f64,
     xy: f64,
@@ -68,6 +69,7 @@ impl Symmetric {
 
 /// Equations of force and of moment of a body: its own part, and those of all bodies that hang on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Bundle {
     /// M [kg].
     mass: Symmetric,

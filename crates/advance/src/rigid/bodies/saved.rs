@@ -1,0 +1,32 @@
+//! Bodies and laws that were saved: what their data do not tell is put back.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::bodies::trajectory::Trajectory;
+use crate::rigid::parts::PartsError;
+use halfgap_geometry::ShapePool;
+use serde::{Deserialize, Deserializer};
+use std::sync::Arc;
+
+/// Reads bodies, whose equal shapes are then in memory once.
+pub(super) fn trajectories<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Trajectory>, D::Error> {
+    let mut trajectories = Vec::<Trajectory>::deserialize(deserializer)?;
+    let mut pool = ShapePool::default();
+    trajectories.iter_mut().for_each(|trajectory| trajectory.share_shape(&mut pool));
+    Ok(trajectories)
+}
+
+impl Assembly {
+    /// Gives the force laws back that the bodies had when they were saved.
+    ///
+    /// # Errors
+    /// [`PartsError::OtherLaws`].
+    pub(crate) fn restore_laws(&mut self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<(), PartsError> {
+        let (given, count) = (laws.len(), self.laws.count());
+        if given != count {
+            return Err(PartsError::OtherLaws { given, count });
+        }
+        self.laws.all = laws;
+        Ok(())
+    }
+}
