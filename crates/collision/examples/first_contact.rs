@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 println!("{name:<17} body {}, {:?}", side.body.0, site.kind);
             }
         }
-        println!("gap               {:.3e} m ({:?})", geometry.distance, record.zone());
+        println!("gap               {:.3e} m ({:?})", geometry.distance, record.gap_state().zone());
         println!("point             ({:.6}, {:.6}) m", geometry.point_primary.x, geometry.point_primary.y);
         println!("normal            ({:.6}, {:.6})", geometry.normal.x, geometry.normal.y);
         println!("normal turns with ({:.4}, {:.4}) 1/s", geometry.normal_rate.x, geometry.normal_rate.y);
