@@ -21,8 +21,9 @@
 //! | `event` | what is done, in which order? |
 //!
 //! `system` is what callers see of all this. `parts` lists the parts of a system, `settings` how it is run, `scales` turns a
-//! tolerance into thresholds for a scene, `remedies` what is done in rare cases, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error`
-//! the reasons why an advance stops.
+//! tolerance into thresholds for a scene, `shares` has the orders of magnitude that decisions use, `remedies` what is done in
+//! rare cases, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error` the reasons why an advance
+//! stops.
 
 mod agenda;
 mod bodies;

@@ -1,5 +1,5 @@
 //! Remedies: what is done in rare cases that no principle covers. Each has a name, a counter in the statistics, a switch for
-//! tests, and a scene among the tests that fails without it; docs/lab/remedies.md lists them.
+//! tests, and, for all but one, a scene among the tests that fails without it; docs/lab/remedies.md lists them.
 //!
 //! The counters are atomic so that a system can be read from several threads; they change no motion.
 
@@ -46,7 +46,7 @@ pub enum Remedy {
     /// Contacts without force that start a segment below their gap by rounding fire at a lower one.
     SunkLowered,
     /// An event that was corrected beyond another contact goes back to that.
-    Passed,
+    Overtaken,
     /// Groups are cut by dense output where a repeated step has touching features elsewhere.
     CutByDense,
     /// Rows of connectors that depend on others are softened, so that they share their force.
@@ -76,7 +76,7 @@ impl Remedy {
         Self::Sparing,
         Self::Lifting,
         Self::SunkLowered,
-        Self::Passed,
+        Self::Overtaken,
         Self::CutByDense,
         Self::SoftRows,
         Self::RenewedRates,
@@ -104,7 +104,7 @@ impl Remedy {
             Self::Sparing => "sparing",
             Self::Lifting => "lifting",
             Self::SunkLowered => "sunk_lowered",
-            Self::Passed => "passed",
+            Self::Overtaken => "overtaken",
             Self::CutByDense => "cut_by_dense",
             Self::SoftRows => "soft_rows",
             Self::RenewedRates => "renewed_rates",

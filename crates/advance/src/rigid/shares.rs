@@ -1,8 +1,8 @@
-//! Shares and counts by which decisions are made that hardly depend on them.
+//! Orders of magnitude, and counts, by which decisions are made.
 //!
-//! A quantity is compared with a share of another of its kind, and what is decided is the same over a wide range of the
-//! share: these are the orders of magnitude that such decisions use. A number that was measured for one decision, or
-//! follows from a formula, is with that decision.
+//! A quantity is compared with a share of another of its kind. Where no measurement and no formula asks for a certain share,
+//! it is one of these orders of magnitude, so that there are few of them: none was fitted to a scene. A number that was
+//! measured for one decision, or follows from a formula, is with that decision.
 
 /// What is less than this fraction of another quantity is as good as nothing beside it [-]. The rate at rest beside that
 /// of a slow contact, the force of a contact that is released beside the loads, and the like.

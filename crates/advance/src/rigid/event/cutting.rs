@@ -122,7 +122,7 @@ pub(crate) fn passed(
         let has_sunk = || gap_at(assembly, Touch { bodies, features }, time).zone() > Zone::Target;
         (predicted < time && has_sunk()).then_some(predicted)
     });
-    contacts.min().filter(|_| assembly.remedies().act(Remedy::Passed))
+    contacts.min().filter(|_| assembly.remedies().act(Remedy::Overtaken))
 }
 
 /// True if touching features of a region are not where the search saw them: those that fired, seen at a gap [m],
