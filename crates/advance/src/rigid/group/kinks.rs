@@ -68,19 +68,14 @@ mod tests {
 
     /// Number of points on a circle of 1 m around the origin.
     const POINTS: u32 = 48;
-    /// Angle [rad] from one point to the next.
-    const SPACING: f64 = TAU / POINTS as f64;
     /// Start of the disc, in spacings past a point.
     const BEGIN: f64 = 0.3;
-    /// Local error at which the joints count, though the method could step that far.
-    const FINE_ERROR: f64 = 1e-8;
-    /// Local error at which the curve is as good as smooth.
-    const COARSE_ERROR: f64 = 1e-4;
 
     /// Distance, in spacings, covered by the first step of a disc that runs on the curve through the points at a speed
     /// [m/s].
     fn way_of_a_step(local_error: f64, speed: f64) -> f64 {
-        let at = |index: f64| DVec2::from_angle(SPACING * index);
+        let spacing = TAU / f64::from(POINTS);
+        let at = |index: f64| DVec2::from_angle(spacing * index);
         let points: Vec<DVec2> = (0..POINTS).map(|index| at(f64::from(index))).collect();
         let path = Arc::new(RailPath::through(&points, true).expect("a curve"));
         let position = path.nearest(at(BEGIN), None).point();
@@ -96,13 +91,14 @@ mod tests {
         let mut rooms = rooms_of(parts, settings, Time::ZERO);
         let group = rooms.groups.take(BodyId(0)).expect("it is held");
         let end = DVec2::new(group.end_state[0], group.end_state[1]);
-        position.angle_to(end) / SPACING
+        position.angle_to(end) / spacing
     }
 
     #[test]
     fn a_step_ends_at_the_next_joint_of_a_spline() {
         for (speed, way) in [(1.0, 1.0 - BEGIN), (-1.0, -BEGIN)] {
-            let went = way_of_a_step(FINE_ERROR, speed);
+            // At this error the joints count, though the method could step that far.
+            let went = way_of_a_step(1e-8, speed);
             // The prediction errs in the third order of the spacing, an eighth of a radian.
             assert!((went - way).abs() < 0.01, "{went} spacings");
         }
@@ -110,7 +106,8 @@ mod tests {
 
     #[test]
     fn joints_that_do_not_matter_are_crossed() {
-        let went = way_of_a_step(COARSE_ERROR, 1.0);
+        // At this error the curve is as good as smooth.
+        let went = way_of_a_step(1e-4, 1.0);
         assert!(went > 2.0, "{went} spacings");
     }
 }

@@ -54,9 +54,6 @@ mod tests {
     use halfgap_collision::BodyId;
     use std::sync::Arc;
 
-    /// Weight of a body [N].
-    const WEIGHT: f64 = 9.81;
-
     /// A force that lifts body 1 ever more: after a second by the body's weight.
     #[derive(Debug)]
     struct Lift;
@@ -71,7 +68,7 @@ mod tests {
         }
 
         fn apply(&self, now: &Snapshot<'_>, wrenches: &mut Wrenches<'_>) {
-            wrenches.add_force(BodyId(1), DVec2::new(0.0, WEIGHT * now.time), DVec2::ZERO);
+            wrenches.add_force(BodyId(1), DVec2::new(0.0, 9.81 * now.time), DVec2::ZERO);
         }
     }
 
