@@ -27,12 +27,18 @@ pub enum Remedy {
     LowHops,
     /// Bodies with more events than forces can resolve are stopped without elasticity.
     Storms,
+    /// In groups whose steps are very short, or that were ended at once, contacts that open ever so slowly are let go.
+    Haste,
     /// A group made anew at the time at which another was ended because a contact pulled may pull again at its start.
     Patience,
+    /// Contacts farther apart than the gap at which bodies fire are left out of impacts whose impulses cancel each other.
+    JammedImpulses,
     /// A point that an impact drives off both sides of its corner is kept on one of them.
     HeldInCorner,
     /// A point that two forces do not hold in its corner leaves that along one of its sides.
     LooseCorner,
+    /// Contacts beyond their target gap are left out where forces exceed all loads by far.
+    JammedForces,
     /// Contacts that act by next to no lever on a body held by connectors are let pass.
     LetPass,
     /// Contacts that run off at once are left out where two corners hand over to each other without end.
@@ -57,7 +63,7 @@ pub enum Remedy {
 
 impl Remedy {
     /// All remedies, in the order of their declaration.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 25] = [
         Self::GhostCorners,
         Self::DeadPoints,
         Self::Insistence,
@@ -67,9 +73,12 @@ impl Remedy {
         Self::LowBounces,
         Self::LowHops,
         Self::Storms,
+        Self::Haste,
         Self::Patience,
+        Self::JammedImpulses,
         Self::HeldInCorner,
         Self::LooseCorner,
+        Self::JammedForces,
         Self::LetPass,
         Self::LeavingNeighbours,
         Self::RestingContradiction,
@@ -95,9 +104,12 @@ impl Remedy {
             Self::LowBounces => "low_bounces",
             Self::LowHops => "low_hops",
             Self::Storms => "storms",
+            Self::Haste => "haste",
             Self::Patience => "patience",
+            Self::JammedImpulses => "jammed_impulses",
             Self::HeldInCorner => "held_in_corner",
             Self::LooseCorner => "loose_corner",
+            Self::JammedForces => "jammed_forces",
             Self::LetPass => "let_pass",
             Self::LeavingNeighbours => "leaving_neighbours",
             Self::RestingContradiction => "resting_contradiction",

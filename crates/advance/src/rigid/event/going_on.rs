@@ -19,6 +19,8 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::remedies::Remedy;
+use crate::rigid::zeno::pace::take_haste;
+use crate::rigid::zeno::repeats::has_pulled;
 use halfgap_geometry::GapSample;
 
 /// Finds the held rows, makes groups, and predicts: the bodies of the region are in flight with their new
@@ -28,6 +30,11 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
         rooms.assembly.trajectory_mut(body).unwind();
     }
     note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now());
+    // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
+    let is_hasty =
+        take_haste(&mut rooms.zeno, work.region.bodies()) || has_pulled(&rooms.zeno, rooms.assembly.now());
+    let is_hasty = is_hasty && rooms.assembly.remedies().act(Remedy::Haste);
+    work.region.set_hasty(is_hasty);
     settle_and_still(rooms, work)?;
     while leave_loose_corner(rooms, work)? {
         settle_and_still(rooms, work)?;

@@ -18,7 +18,7 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
     settling.set_likely(region.records().iter().map(|record| is_likely(&rooms.pairs, record)));
     settling.expect_forces(region, &rooms.books.told().changes().end);
     let is_on = rooms.assembly.remedies().is_on(Remedy::LowHops);
-    let may_hop = is_on && work.region.cause() != Cause::Start;
+    let may_hop = is_on && work.region.cause() != Cause::Start && !work.region.is_hasty();
     settle_region(rooms, work, may_hop)?;
     for round in 1..=ROUNDS {
         if !is_on || !any_held_hops(&rooms.assembly, &work.region, &work.settling) {

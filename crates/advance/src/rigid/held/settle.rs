@@ -24,7 +24,7 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
-use crate::rigid::shares::ROUNDED;
+use crate::rigid::shares::{NEGLIGIBLE, ROUNDED};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyAcceleration, BodyId, Collision};
@@ -62,9 +62,10 @@ pub(crate) fn settle(
         (false, true) => view.assembly.storm_rest(),
         (false, false) => view.assembly.rest_speed(),
     };
+    let share = if region.is_hasty() { NEGLIGIBLE } else { 1.0 };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
-        holds(view.assembly, record) && record.is_contact(-rest..=rest)
+        holds(view.assembly, record) && record.is_contact(-rest..=share * rest)
     };
     let records = || region.records().iter().enumerate();
     settling.candidates.extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
@@ -123,10 +124,18 @@ fn solve_candidates(
             return Ok(Solved::Soundly);
         }
     }
-    if is_sound {
-        return Ok(Solved::Soundly);
+    let remedies = assembly.remedies();
+    settling.dropped.clear();
+    if remedies.act(Remedy::JammedForces) {
+        drop_distant(assembly, region, settling, stage);
     }
-    if let Err(source) = settling.solve_strictly() {
+    let mut found = settling.solve_strictly();
+    while is_sound && found.is_ok() && take_back_pressed(assembly, region, settling, stage) {
+        pose_problem(assembly, region, settling, stage);
+        found = settling.solve_strictly();
+    }
+    let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
+    if let Err(source) = found {
         // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.
         let velocity = |body: BodyId| assembly.moving_at(body, time).velocity;
@@ -142,7 +151,7 @@ fn solve_candidates(
         settling.solution.force.clear();
         settling.solution.force.resize(settling.candidates.len(), 0.0);
     }
-    Ok(Solved::Somehow)
+    Ok(solved)
 }
 
 /// Adds the contacts that open in no more than a low hop under the forces of the candidates; true if there are any.
@@ -201,6 +210,38 @@ pub(crate) fn accelerations_of(
 /// True if a unilateral row may carry a force: connectors always do.
 pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
     assembly.settings().impulse_step.is_none() || record.parties.primary.site.is_none()
+}
+
+/// Leaves out contacts beyond their target gap, which need not be in contact: a body that fits between two others
+/// with little room touches at most one of them.
+fn drop_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
+    let Settling { candidates, dropped, .. } = settling;
+    let may_stay = |index: &usize| region.records()[*index].gap_state().is_at_target(assembly.sink());
+    dropped.clear();
+    dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
+    candidates.retain(may_stay);
+    pose_problem(assembly, region, settling, stage);
+}
+
+/// Takes back the contacts left out that the forces found without them press together; true if there are any. A
+/// body that fits with little room is pressed on one side only. In an arch that is nearly straight all contacts
+/// carry forces far larger than all loads: if the remaining candidates jam, too, all contacts are taken back.
+fn take_back_pressed(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+    if settling.dropped.is_empty() {
+        return false;
+    }
+    if is_jammed(assembly, region, settling, stage) {
+        settling.take_back(|_| true);
+        return true;
+    }
+    push_bodies(assembly, region, settling, stage);
+    let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+    let pushed = std::mem::take(&mut settling.pushed);
+    let is_pressed =
+        |index: usize| offset_under(region, &region.records()[index], &pushed) < -NEGLIGIBLE * scale;
+    let any = settling.take_back(is_pressed);
+    settling.pushed = pushed;
+    any
 }
 
 fn accelerate_region(

@@ -33,6 +33,9 @@ pub(crate) struct Settling {
     /// Indices of the records that enter the problem.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) candidates: Vec<usize>,
+    /// Indices of the records that were left out because rows seemed to work against each other.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) dropped: Vec<usize>,
     /// Contacts that were left out because they act by next to no lever: they may come as near as grazing contacts.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) passing: Vec<Touch>,
@@ -93,6 +96,7 @@ impl Default for Settling {
             has_pulled: false,
             lenient: solver(lenient),
             candidates: Vec::new(),
+            dropped: Vec::new(),
             passing: Vec::new(),
             levers: Levers::default(),
             redundant: Redundant::default(),
@@ -169,6 +173,19 @@ impl Settling {
             let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
             Some(self.ended[place].1)
         }));
+    }
+
+    /// Takes back the dropped records that are wanted as candidates; true if there are any.
+    pub(super) fn take_back(&mut self, is_wanted: impl Fn(usize) -> bool) -> bool {
+        let before = self.dropped.len();
+        let Self { candidates, dropped, .. } = self;
+        dropped.retain(|&index| {
+            let is_wanted = is_wanted(index);
+            candidates.extend(is_wanted.then_some(index));
+            !is_wanted
+        });
+        candidates.sort_unstable();
+        dropped.len() < before
     }
 
     /// True if a contact was left out because it acts by next to no lever.

@@ -25,11 +25,15 @@ pub(crate) struct Region {
     pub(super) cause: Cause,
     /// True if the event is one too many in a short time.
     pub(super) in_storm: bool,
+    /// True if steps have become so short that contacts that count as resting seem to take turns.
+    pub(super) is_hasty: bool,
     pub(super) fresh: Vec<Collision>,
     /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].
     pub(super) changes: Vec<[f64; 3]>,
     /// Whether an impulse acts on each body.
     pub(super) struck: Vec<bool>,
+    /// Records that were left out because they jam.
+    pub(super) left_out: Vec<Collision>,
     /// Stamp and place in `bodies` of each body, valid where the stamp is the present one.
     pub(super) places: Vec<(u32, u32)>,
     pub(super) stamp: u32,
@@ -53,6 +57,51 @@ impl Region {
     /// Sets the cause of the event.
     pub(crate) fn set_cause(&mut self, cause: Cause) {
         self.cause = cause;
+    }
+
+    /// Notes whether contacts that count as resting seem to take turns.
+    pub(crate) fn set_hasty(&mut self, is_hasty: bool) {
+        self.is_hasty = is_hasty;
+    }
+
+    /// Lets all records in that are left out.
+    pub(crate) fn admit_all(&mut self) {
+        self.records.append(&mut self.left_out);
+    }
+
+    /// Leaves out the records of which a test is true; those that were left out before are forgotten.
+    pub(crate) fn leave_out(&mut self, is_out: impl Fn(&Collision) -> bool) {
+        self.left_out.clear();
+        self.left_out.extend(self.records.extract_if(.., |record| is_out(record)));
+    }
+
+    /// Lets in again the records left out of which a test is true, given the change of their rate [m/s] by the changes
+    /// of the bodies' velocities; true if there are any.
+    pub(crate) fn admit(&mut self, is_in: impl Fn(&Collision, f64) -> bool) -> bool {
+        let (mut records, mut left_out) =
+            (std::mem::take(&mut self.records), std::mem::take(&mut self.left_out));
+        let before = records.len();
+        records.extend(left_out.extract_if(.., |record| is_in(record, self.change_of(record))));
+        let any = records.len() > before;
+        (self.records, self.left_out) = (records, left_out);
+        any
+    }
+
+    /// Change of the rate of a record [m/s] by the changes of its bodies' velocities; positive opens.
+    fn change_of(&self, record: &Collision) -> f64 {
+        let j = &record.motion.kinematics.jacobian;
+        let sides = record.bodies();
+        let of_side = |(side, body): (usize, BodyId)| {
+            let change = self.place(body).map_or([0.0; 3], |place| self.changes[place]);
+            (0..3).map(|k| j[3 * side + k] * change[k]).sum::<f64>()
+        };
+        sides.into_iter().enumerate().map(of_side).sum()
+    }
+
+    /// Records that were left out because they jam.
+    #[inline]
+    pub(crate) fn left_out(&self) -> &[Collision] {
+        &self.left_out
     }
 
     /// Notes whether the event is one too many in a short time.
@@ -179,6 +228,12 @@ impl Region {
     #[inline]
     pub(crate) fn in_storm(&self) -> bool {
         self.in_storm
+    }
+
+    /// True if steps have become so short that contacts that count as resting seem to take turns.
+    #[inline]
+    pub(crate) fn is_hasty(&self) -> bool {
+        self.is_hasty
     }
 
     /// Gap of each pair in `touches` after the event.

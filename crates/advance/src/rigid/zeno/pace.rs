@@ -14,6 +14,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
+use crate::rigid::shares::TINY;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::steps::Pace;
 use crate::rigid::zeno::turns::too_fast;
@@ -29,6 +30,9 @@ const PACES: u32 = 10;
 /// memory, to be returned once the event is over.
 pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
     let pace = &mut zeno.paces[group.leader().index()];
+    if let Some(mean) = pace.few.note(group.start()) {
+        pace.is_hasty = mean < TINY * assembly.settings().resolution_time;
+    }
     let mean = pace.all.note(group.start());
     zeno.crawls = None;
     let Some(step) = mean else { return };
@@ -71,6 +75,15 @@ pub(crate) fn names_of_laws(assembly: &Assembly, group: &Group) -> Vec<String> {
 /// Forgets the steps of bodies that have taken part in an impact: their groups make progress.
 pub(crate) fn forget_paces(zeno: &mut Zeno, bodies: &[BodyId]) {
     bodies.iter().for_each(|body| zeno.paces[body.index()] = Pace::default());
+}
+
+/// True if one of some bodies has led a hasty group; that is then forgotten.
+pub(crate) fn take_haste(zeno: &mut Zeno, bodies: &[BodyId]) -> bool {
+    let mut any = false;
+    for body in bodies {
+        any |= std::mem::take(&mut zeno.paces[body.index()].is_hasty);
+    }
+    any
 }
 
 #[cfg(test)]

@@ -5,13 +5,18 @@ use crate::time::Time;
 /// Number of steps in succession over which one mean length is taken.
 pub(crate) const STEPS: u32 = 10_000;
 
+/// Number of steps in succession over whose mean length a group is found to be hasty.
+pub(crate) const FEW_STEPS: u32 = 64;
+
 /// The recent steps of a group, kept for the body that leads it.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pace {
     pub(super) all: Count<STEPS>,
+    pub(super) few: Count<FEW_STEPS>,
     /// Number of hopeless means in succession.
     pub(super) hopeless: u32,
+    pub(super) is_hasty: bool,
 }
 
 /// Takes the mean length of every `STEPS` steps.
