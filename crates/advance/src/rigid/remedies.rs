@@ -124,9 +124,6 @@ impl Remedy {
     }
 }
 
-/// Number of remedies.
-const COUNT: usize = Remedy::ALL.len();
-
 /// A set of remedies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -152,11 +149,11 @@ impl RemedySet {
 
 /// How often each remedy has acted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RemedyCounts([u64; COUNT]);
+pub struct RemedyCounts([u64; Remedy::ALL.len()]);
 
 impl Default for RemedyCounts {
     fn default() -> Self {
-        Self([0; COUNT])
+        Self([0; Remedy::ALL.len()])
     }
 }
 
@@ -178,7 +175,7 @@ impl RemedyCounts {
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Remedies {
     without: RemedySet,
-    acted: [AtomicU64; COUNT],
+    acted: [AtomicU64; Remedy::ALL.len()],
 }
 
 impl Clone for Remedies {
@@ -189,7 +186,7 @@ impl Clone for Remedies {
 
 impl Remedies {
     pub(crate) fn new(without: RemedySet) -> Self {
-        Self { without, acted: [0; COUNT].map(AtomicU64::new) }
+        Self { without, acted: [0; Remedy::ALL.len()].map(AtomicU64::new) }
     }
 
     /// Counts that a remedy is to act; false if it is off.

@@ -231,8 +231,6 @@ mod tests {
 
     use super::*;
 
-    const METHOD: Method = Method::Dop853;
-
     /// Shares at the stages of a step of a length [s]: `floor` plus the square of the distance to a point [s], up to a
     /// factor.
     fn seen(length: f64, point: f64, floor: f64) -> Kept {
@@ -249,37 +247,39 @@ mod tests {
     #[test]
     fn a_step_is_led_astride_of_a_point_that_a_stage_comes_near() {
         for (length, point) in [(1.0, 0.3), (1.0, 0.27), (0.01, 0.0025), (2.0, 0.31), (1.0, 0.06)] {
-            let better =
-                seen(length, point, 0.0).better_length(length, length, METHOD).expect("a stage is near");
+            let better = seen(length, point, 0.0)
+                .better_length(length, length, Method::Dop853)
+                .expect("a stage is near");
             assert!(better < length);
             // The better step has the point in the middle of the widest interval, and is left as it is.
             assert!(
-                (point / better - METHOD.middle_between_stages().expect("it has stages")).abs() < 1e-2,
+                (point / better - Method::Dop853.middle_between_stages().expect("it has stages")).abs()
+                    < 1e-2,
                 "{better}"
             );
-            assert_eq!(seen(better, point, 0.0).better_length(better, better, METHOD), None);
+            assert_eq!(seen(better, point, 0.0).better_length(better, better, Method::Dop853), None);
         }
     }
 
     #[test]
     fn a_step_that_cannot_pass_a_point_between_its_stages_ends_where_the_next_one_can() {
-        let middle = METHOD.middle_between_stages().expect("it has stages");
+        let middle = Method::Dop853.middle_between_stages().expect("it has stages");
         for point in [0.6, 0.86, 0.97, 1.03, 1.3] {
-            let better = seen(1.0, point, 0.0).better_length(1.0, 1.0, METHOD).expect("it is near");
+            let better = seen(1.0, point, 0.0).better_length(1.0, 1.0, Method::Dop853).expect("it is near");
             assert!((better + middle - point).abs() < 1e-2, "{point}: {better}");
         }
         // If the point is nearly in the middle, the step still goes part of the way.
-        let better = seen(1.0, 0.57, 0.0).better_length(1.0, 1.0, METHOD).expect("a stage is near");
+        let better = seen(1.0, 0.57, 0.0).better_length(1.0, 1.0, Method::Dop853).expect("a stage is near");
         assert!(better >= SMALL * 0.56, "{better}");
     }
 
     #[test]
     fn a_step_that_may_be_longer_passes_a_point_rather_than_ending_before_it() {
-        let middle = METHOD.middle_between_stages().expect("it has stages");
+        let middle = Method::Dop853.middle_between_stages().expect("it has stages");
         let (length, point) = (0.5, 0.3);
         let kept = seen(length, point, 0.0);
-        let [before, beyond] =
-            [length, 1.0].map(|most| kept.better_length(length, most, METHOD).expect("a stage is near"));
+        let [before, beyond] = [length, 1.0]
+            .map(|most| kept.better_length(length, most, Method::Dop853).expect("a stage is near"));
         assert!(before < point && (beyond - point / middle).abs() < 1e-2, "{before}, {beyond}");
     }
 
@@ -309,7 +309,7 @@ mod tests {
     fn shares_that_show_no_point_ahead_lead_no_step() {
         // The point is behind, or far ahead, or before the first stage, or astride; or the share does not vanish.
         for (point, floor) in [(-0.5, 0.0), (1.6, 0.0), (0.01, 0.0), (0.45, 0.0), (0.3, 1.0)] {
-            assert_eq!(seen(1.0, point, floor).better_length(1.0, 1.0, METHOD), None, "{point}");
+            assert_eq!(seen(1.0, point, floor).better_length(1.0, 1.0, Method::Dop853), None, "{point}");
         }
         assert_eq!(seen(1.0, 0.3, 0.0).better_length(1.0, 1.0, Method::Rk4), None);
     }
@@ -344,14 +344,18 @@ mod tests {
     fn a_shortened_step_does_not_end_at_a_point() {
         let kept = seen(1.0, 0.3, 0.0);
         for (factor, expected) in [(0.9, 0.643), (0.5, 0.0667), (0.2, 0.2)] {
-            let [asked, led] = kept.shorter_lengths(1.0, factor, METHOD);
+            let [asked, led] = kept.shorter_lengths(1.0, factor, Method::Dop853);
             assert!(asked == factor && (led - expected).abs() < 1e-2, "{factor}: {led}");
         }
         for (point, factor) in [(2.0, 0.9), (-0.1, 0.9), (0.01, 0.9)] {
-            assert_eq!(seen(1.0, point, 0.0).shorter_lengths(1.0, factor, METHOD), [factor; 2], "{point}");
+            assert_eq!(
+                seen(1.0, point, 0.0).shorter_lengths(1.0, factor, Method::Dop853),
+                [factor; 2],
+                "{point}"
+            );
         }
         // A step astride is shortened less at once: its errors are rounding, which grows as steps become shorter.
-        let [asked, _] = seen(1.0, 0.46, 0.0).shorter_lengths(1.0, 0.2, METHOD);
+        let [asked, _] = seen(1.0, 0.46, 0.0).shorter_lengths(1.0, 0.2, Method::Dop853);
         assert_eq!(asked, SHORTENING);
     }
 }

@@ -149,15 +149,12 @@ mod tests {
     use crate::rigid::watch::early_ends::way_to_end;
     use halfgap_collision::BodyId;
 
-    /// Length of a segment [s].
-    const SPAN: f64 = 0.125;
-
     /// Runs the contact of body 1 along a segment from a changed start. Returns whether it is said to stay on its
     /// features, and whether it does.
     fn said_and_done(mut rooms: Rooms, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
         let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
         set_out(&mut group);
-        group.set_next_step(Some(SPAN));
+        group.set_next_step(Some(0.125));
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.set_out();
             dynamics.extend(tools).expect("it slides");
@@ -178,7 +175,7 @@ mod tests {
     fn a_disc_that_slides_along_a_floor_stays_up_to_its_end() {
         // The floor ends 1 m from the disc, which neither speeds up nor turns.
         for speed in [-150.0, 0.0, 1.0, 7.5, 7.99, 8.01, 9.0, 50.0] {
-            let expected = speed * SPAN < 1.0;
+            let expected = speed * 0.125 < 1.0;
             assert_eq!(
                 said_and_done(resting_discs(&[9.0]), |disc| disc.state_mut()[3] = speed),
                 [expected; 2],

@@ -18,14 +18,10 @@ use halfgap_collision::{BodyId, Collision, Tolerances};
 
 /// Number of such events that each row of the region allows beyond them.
 const CALM_EVENTS_PER_ROW: usize = 10;
-/// Storm load of an event that is both wide and costly.
-const LOAD_OF_BOTH: usize = 1;
-/// Storm load of an event that is wide or costly, but not both.
+/// Storm load of an event that is wide or costly, but not both; that of one that is both is 1.
 const LOAD_OF_ONE: usize = 100;
 /// Storm load of an event that is neither; a storm is more than this times (20 + 10 x rows).
 const LOAD_OF_NEITHER: usize = 50 * LOAD_OF_ONE;
-/// Storm load of a body up to which no event is examined for its cost: so few events make no storm.
-const LOAD_WITHOUT_COST: usize = 10 * LOAD_OF_ONE;
 /// An event is still if it follows the one before at once, and its bodies came towards each other in between by less
 /// than this fraction of the half-width of the target zone. Such events are counted on beyond the resolution time,
 /// however long they go on: forces that the start did not show press contacts together, of which now the one, now the
@@ -48,7 +44,8 @@ pub(crate) fn note_events(
     let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
     let (wide, still) = (LARGE * target_gap, STILL * accuracy);
     let at_once = AT_ONCE * assembly.settings().steps.length / assembly.settings().steps.speed;
-    let is_often = bodies.iter().any(|body| zeno.recent[body.index()].load > LOAD_WITHOUT_COST);
+    // So few events make no storm: none of them is examined for its cost.
+    let is_often = bodies.iter().any(|body| zeno.recent[body.index()].load > 10 * LOAD_OF_ONE);
     let is_costly = is_often && is_costly(assembly, of);
     let mut most = 0;
     for &body in bodies {
@@ -61,7 +58,7 @@ pub(crate) fn note_events(
         }
         let is_wide = way.is_none_or(|way| way > wide);
         recent.load += match (is_wide, is_costly) {
-            (true, true) => LOAD_OF_BOTH,
+            (true, true) => 1,
             (true, false) | (false, true) => LOAD_OF_ONE,
             (false, false) => LOAD_OF_NEITHER,
         };

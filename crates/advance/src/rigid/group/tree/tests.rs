@@ -21,11 +21,8 @@ use proptest::prelude::*;
 const TOLERANCES: Tolerances = Tolerances { target_gap: 1e-3, accuracy: 6e-4, velocity_tol: 1e-2 };
 /// Acceptable error of a step [m].
 const STEP_ERROR: f64 = 1e-9;
-/// Difference of two rates or forces that is rounding, as a fraction of the largest one, or of 1 if that is more.
-const ROUNDING: f64 = 1e-9;
 /// Kept share of a row beside pins and other rows above which softness has no visible effect.
 const WELL_KEPT: f64 = 1e-3;
-const GRAVITY: DVec2 = DVec2::new(0.3, -9.81);
 
 /// Support from which a body hangs.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +93,7 @@ impl Scene {
             let shape = Shape::block(1.0, 0.4).expect("a fine block");
             let inverse_mass = body.mass.recip();
             let body = Body { shape, inverse_mass, inverse_moment: 3.0 * inverse_mass, elasticity: 0.5 };
-            let law = FreeMotion { acceleration: GRAVITY, ..FreeMotion::default() };
+            let law = FreeMotion { acceleration: DVec2::new(0.3, -9.81), ..FreeMotion::default() };
             Trajectory::new(body, law, *state, Time::ZERO)
         };
         let mut trajectories: Vec<_> = hung.iter().zip(&states).map(trajectory).collect();
@@ -199,7 +196,7 @@ impl Told {
 
 fn agree(by_rows: &[f64], by_tree: &[f64]) -> bool {
     let largest = by_rows.iter().fold(1.0f64, |most, rate| most.max(rate.abs()));
-    by_rows.iter().zip(by_tree).all(|(a, b)| (a - b).abs() <= ROUNDING * largest)
+    by_rows.iter().zip(by_tree).all(|(a, b)| (a - b).abs() <= 1e-9 * largest)
 }
 
 proptest! {
@@ -297,11 +294,10 @@ fn slot_beside_a_pin(masses: [f64; 2], second: On, normal: DVec2) -> Scene {
 #[test]
 fn what_softness_leaves_lacking_is_made_good() {
     // The row of a slot that pushes bodies nearly towards their pins has a kept share of some millionths.
-    const KEPT: f64 = 1e-5;
     let scene = slot_beside_a_pin([1.0, 2.0], On::World, DVec2::new(2.0, 1.01));
     let told = scene.told();
     assert_eq!(told.coordinates, 2);
-    assert!(told.kept < KEPT, "{}", told.kept);
+    assert!(told.kept < 1e-5, "{}", told.kept);
     assert!(told.agrees(), "{told:?}");
 }
 
@@ -309,13 +305,12 @@ fn what_softness_leaves_lacking_is_made_good() {
 fn what_a_light_body_passes_on_to_a_heavy_one_is_not_softened() {
     // A slot that pushes a light body towards its pin moves only the heavy body: a fraction of the light one's square
     // that is below all softness. The lighter the light body, the less its mass matters.
-    const LIGHT: f64 = 1e-6;
-    const LIGHTER: f64 = 1e-9;
+    let masses = [1e-6, 1e-9];
     let of = |mass| slot_beside_a_pin([mass, 1.0], On::Nothing, DVec2::new(2.0, 1.0)).told();
-    let [light, lighter] = [LIGHT, LIGHTER].map(of);
+    let [light, lighter] = masses.map(of);
     assert_eq!(lighter.coordinates, 4);
     assert!(lighter.kept > WELL_KEPT, "{}", lighter.kept);
     let difference =
         light.by_rows.iter().zip(&lighter.by_tree).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(difference < LIGHT, "{light:?}\n{lighter:?}");
+    assert!(difference < masses[0], "{light:?}\n{lighter:?}");
 }
