@@ -11,13 +11,14 @@ pub(crate) const NEGLIGIBLE: f64 = 1e-3;
 pub(crate) const SMALL: f64 = 0.1;
 /// A quantity that exceeds another by this factor is of another order [-].
 pub(crate) const LARGE: f64 = 10.0;
-/// Fraction up to which an error or a depth is minor [-]: it is corrected where that costs nothing.
+/// Fraction of a zone or of a body up to which an error or a depth is minor [-]: it need not be corrected.
 pub(crate) const MINOR: f64 = 1e-2;
 /// Factor by which impulses, forces or losses of energy exceed what can explain them [-].
 pub(crate) const MAJOR: f64 = 1e2;
 /// Fraction of a length, of a time, or of a force that cannot be seen [-].
 pub(crate) const TINY: f64 = 1e-4;
-/// Factor that nothing in a scene explains [-].
+/// A multiple of what the scene itself does that leaves no doubt [-]: of its acceleration, of the time that forces need, of
+/// rounding.
 pub(crate) const HUGE: f64 = 1e3;
 /// A few times [-]: a decision for something is worth its price if that is so much less.
 pub(crate) const SEVERAL: f64 = 4.0;

@@ -115,6 +115,8 @@ pub(crate) fn has_stayed_low(
         assembly.settings().impulse_step.is_none()
             && down * down <= 2.0 * times * assembly.acceleration() * most
     };
+    // Forces may press bodies together with many times the scene's acceleration. A pair of which a body was struck, as in a
+    // deep heap, must be slower: else the energy of a blow is lost, which an elastic body passes on and gets back at once.
     let is_low = || {
         if is_struck_since(assembly, pairs, pair, seen) {
             forced(MAJOR)

@@ -85,6 +85,7 @@ impl Mechanism<'_> {
         if !self.is_corner_on_line(&sample, row.bodies, features, movings) {
             return false;
         }
+        // Less than the share at which the change is an event, so that it is one only once.
         self.lean(sample, row.bodies, features, movings) > 0.5 * CHANGE_SHARE * self.tolerances.accuracy
     }
 

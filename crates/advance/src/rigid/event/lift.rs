@@ -58,6 +58,7 @@ fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWo
     shifts.resize(region.bodies().len(), [0.0; 3]);
     settling.add_responses(region, rows, |body| assembly.inertia(body), shifts);
     let longest = longest_way(assembly, region, shifts);
+    // Farther, gaps are not nearly linear in the displacement.
     let share = if longest.1 > SMALL { SMALL / longest.1 } else { 1.0 };
     sinking.note_move(share * longest.0);
     for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts.iter()) {

@@ -65,6 +65,8 @@ impl Dynamics<'_> {
         let usual = control.speed * control.speed * masses.sum::<f64>();
         let moving = usual + before.kinetic + end.kinetic;
         let rounding = f64::EPSILON * (before.total.abs() + after.abs());
+        // Where rows nearly depend on each other, or near a centre of attraction, errors that are rounding elsewhere do
+        // work, and no error estimate shows it.
         lost / (MAJOR * control.local_error * moving + HUGE * rounding)
     }
 

@@ -69,6 +69,7 @@ impl Dynamics<'_> {
         }
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let gap = self.physics.mechanism.tolerances.target_gap;
+        // Over fewer gaps, those of the contacts would decide on the forces.
         if any_contact && self.group.force_length <= LARGE * gap {
             return false;
         }

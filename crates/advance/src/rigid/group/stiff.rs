@@ -100,6 +100,7 @@ impl Dynamics<'_> {
         let steep = rate.max(self.group.stiffness.steep);
         let is_rough =
             steep * steep * self.group.span * self.rounding() >= self.velocity_scale(&tools.settings.steps);
+        // Steep forces amplify rounding in an explicit method however short its steps, but not in an implicit one.
         let held_up = if is_rough { SMALL } else { NEARLY_ALL };
         let stiffness = &mut self.group.stiffness;
         stiffness.rate = rate;

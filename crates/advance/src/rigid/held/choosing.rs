@@ -40,6 +40,7 @@ pub(crate) fn drop_idle(
         let record = region.records()[index];
         let loads = places_of(region, &record).map(|place| gross[place]);
         let is_released = Touch::of(&record).is_some_and(|touch| region.cause() == Cause::Released(touch));
+        // With less force, a contact that was just released sinks so slowly that it may as well be touched again.
         let share = if is_released { NEGLIGIBLE } else { IDLE_SHARE };
         let least = share * loads.fold(f64::INFINITY, f64::min);
         let lies_deep = lifted(assembly, pairs, &record).is_some();

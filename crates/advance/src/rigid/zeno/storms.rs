@@ -42,6 +42,7 @@ pub(crate) fn note_events(
     let (now, window) = (assembly.now(), assembly.settings().resolution_time);
     let speed = records.iter().map(|record| -record.motion.normal_velocity).fold(0.0, f64::max);
     let Tolerances { target_gap, accuracy, .. } = assembly.settings().tolerances;
+    // A light body between heavy ones that close on it goes a wide way each time, until it has turned them back: no storm.
     let (wide, still) = (LARGE * target_gap, STILL * accuracy);
     let at_once = AT_ONCE * assembly.settings().steps.length / assembly.settings().steps.speed;
     // So few events make no storm: none of them is examined for its cost.
