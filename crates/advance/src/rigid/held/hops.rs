@@ -75,7 +75,7 @@ pub(crate) fn time_of_hops(assembly: &Assembly, region: &Region, settling: &Sett
         let closing = force_of(record) * row.coupling(&row);
         is_low_hop(assembly, record, -closing).then(|| 2.0 * rate / closing)
     });
-    // In some of the longest hops all have landed: one that comes down may make others hop.
+    // After so many times the longest hop all have landed: one that comes down may make others hop.
     times.max_by(f64::total_cmp).map(|time| LARGE * time)
 }
 
