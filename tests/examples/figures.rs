@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The rooms, each of which may import those before it only.
-const ROOMS: [&str; 13] = [
+const ROOMS: [&str; 15] = [
     "bodies",
     "connectors",
     "contacts",
@@ -26,6 +26,8 @@ const ROOMS: [&str; 13] = [
     "impact",
     "held",
     "event",
+    "ticks",
+    "due",
 ];
 /// Largest number of methods of `RigidSystem`.
 const MOST_METHODS: usize = 60;

@@ -1,7 +1,7 @@
 //! Rigid bodies: free flight in closed form, groups of coupled bodies by an integrator, contacts predicted pair by
 //! pair, events located at their time.
 //!
-//! Each folder is a room. A room may use those above it in this table, and none below; what it guarantees is stated in its
+//! Each folder is a room, and so are the files `ticks` and `system`. A room may use those above it in this table, and none below; what it guarantees is stated in its
 //! `mod.rs`.
 //!
 //! | room | question it answers |
@@ -19,6 +19,8 @@
 //! | `impact` | which impulses? |
 //! | `held` | which rows are held afterwards? |
 //! | `event` | what is done, in which order? |
+//! | `ticks` | what is done where contacts carry impulses only? |
+//! | `due` | which event is it? |
 //!
 //! `system` is what callers see of all this. `parts` lists the parts of a system, `settings` how it is run, `scales` turns a
 //! tolerance into thresholds for a scene, `shares` has the orders of magnitude that decisions use, `remedies` what is done in
@@ -30,6 +32,7 @@ mod bodies;
 mod books;
 mod connectors;
 mod contacts;
+mod due;
 mod error;
 mod event;
 mod forest;
@@ -47,6 +50,7 @@ mod sinking;
 mod system;
 #[cfg(test)]
 mod test_scene;
+mod ticks;
 mod watch;
 mod zeno;
 

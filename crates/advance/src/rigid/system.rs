@@ -11,9 +11,9 @@ use crate::rigid::books::forces::row_forces;
 use crate::rigid::books::ledger::Ledger;
 use crate::rigid::books::report::{ContactChanges, Handled, ImpactReport, RowForce};
 use crate::rigid::books::works::write_ledger;
+use crate::rigid::due::events::establish;
+use crate::rigid::due::handling::{finish, handle, happen};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::event::events::establish;
-use crate::rigid::event::handling::{finish, handle, happen};
 use crate::rigid::event::intervention::{
     LawChange, VelocityChange, change_laws, change_velocities, check_finite,
 };

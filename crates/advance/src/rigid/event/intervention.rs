@@ -82,8 +82,7 @@ fn restart(
     bodies: impl Iterator<Item = BodyId>,
     act: impl FnOnce(&mut Assembly, &mut Books),
 ) -> Result<(), AdvanceError> {
-    work.seeds.clear();
-    work.seeds.extend(bodies.filter(|&body| rooms.assembly.is_movable(body)));
+    work.seed(bodies.filter(|&body| rooms.assembly.is_movable(body)));
     if work.seeds.is_empty() {
         act(&mut rooms.assembly, &mut rooms.books);
         return Ok(());

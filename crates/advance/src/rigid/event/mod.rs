@@ -1,10 +1,9 @@
-//! Handling of an event: gather, impact, active set, groups, predict.
+//! The steps of handling an event: gather, impact, active set, groups, predict.
 //!
 //! **Invariant**: after an event no held contact pulls, no touching pair closes faster than at rest, every movable body is
-//! either in flight or in a group with a segment, and all predictions of the bodies involved are new. Only this room sees
-//! all others; it keeps nothing but buffers.
+//! either in flight or in a group with a segment, and all predictions of the bodies involved are new. It keeps
+//! nothing but buffers, and sees all rooms but those that call it: which event it is, it is told (`due`).
 //!
-//! * from the agenda: `handling`, `events` (by source), `joints` and `ticks` (points that come to a joint, sunk contacts);
 //! * velocities: `impacting`, `changing` (held rows change), `resolving`, `intervention` (by the caller), `lift` and `shift`
 //!   (sunk bodies are put back);
 //! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `rules` (what the
@@ -17,14 +16,11 @@ pub(super) mod changing;
 pub(super) mod corners;
 pub(super) mod coupling;
 pub(super) mod cutting;
-pub(super) mod events;
 pub(super) mod going_on;
 pub(super) mod groups;
-pub(super) mod handling;
 pub(super) mod hops;
 pub(super) mod impacting;
 pub(super) mod intervention;
-pub(super) mod joints;
 pub(super) mod life;
 pub(super) mod lift;
 pub(super) mod members;
@@ -35,5 +31,4 @@ pub(super) mod rules;
 pub(super) mod settling;
 pub(super) mod shift;
 pub(super) mod telling;
-pub(super) mod ticks;
 pub(super) mod work;

@@ -4,6 +4,7 @@ use crate::rigid::books::report::ImpactReport;
 use crate::rigid::event::shift::Lift;
 use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
+use crate::rigid::zeno::repeats::CALM_REPEATS;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_contact::Impact;
 
@@ -34,4 +35,23 @@ pub(crate) struct EventWork {
     /// True if the contact that fired does not close: the search took its rounding for motion.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) fired_open: bool,
+}
+
+impl EventWork {
+    /// Sets the bodies from which the region of the event is collected.
+    pub(crate) fn seed(&mut self, bodies: impl IntoIterator<Item = BodyId>) {
+        self.seeds.clear();
+        self.seeds.extend(bodies);
+    }
+
+    /// Sorts the bodies from which the region is collected, and leaves each there once.
+    pub(crate) fn sort_seeds(&mut self) {
+        self.seeds.sort_unstable();
+        self.seeds.dedup();
+    }
+
+    /// Notes how many times the pair that fired has done so without time going by.
+    pub(crate) fn note_repeats(&mut self, repeats: u32) {
+        self.repeats = repeats.saturating_sub(CALM_REPEATS);
+    }
 }

@@ -49,7 +49,7 @@ pub(crate) fn note_repeat(
 mod tests {
     use super::*;
     use crate::rigid::bodies::trajectory::FreeMotion;
-    use crate::rigid::event::events::handle_contact;
+    use crate::rigid::due::events::handle_contact;
     use crate::rigid::event::rooms::Rooms;
     use crate::rigid::parts::{BodyPart, RigidParts};
     use crate::rigid::test_scene::{FINE, rooms_of};

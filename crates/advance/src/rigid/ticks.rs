@@ -95,10 +95,8 @@ pub(crate) fn handle_tick(rooms: &mut Rooms) -> Result<(), AdvanceError> {
         rooms.books.note_gap(gap.distance);
     }
     let outcome = with_work(rooms, Cause::Tick, |rooms, work| {
-        work.seeds.clear();
-        work.seeds.extend(rooms.sinking.waiting().iter().flat_map(|touch| touch.bodies));
-        work.seeds.sort_unstable();
-        work.seeds.dedup();
+        work.seed(rooms.sinking.waiting().iter().flat_map(|touch| touch.bodies));
+        work.sort_seeds();
         handle_impact(rooms, work)
     });
     keep_what_is_sunk(&rooms.assembly, &mut rooms.sinking, &mut rooms.agenda);

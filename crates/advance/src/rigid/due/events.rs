@@ -6,30 +6,29 @@ use crate::rigid::contacts::gaps::leaves;
 use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::contacts::touch::Touch;
+use crate::rigid::due::joints::{meet_stop, pass_joint};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::changing::handle_change;
 use crate::rigid::event::going_on::go_on;
 use crate::rigid::event::groups::let_go;
 use crate::rigid::event::impacting::{collide, handle_impact};
-use crate::rigid::event::joints::{meet_stop, pass_joint};
 use crate::rigid::event::life::{continue_group, look_further};
 use crate::rigid::event::rooms::{Rooms, with_work};
-use crate::rigid::event::ticks::{note_pressed, sinks};
 use crate::rigid::event::work::EventWork;
 use crate::rigid::group::groups::group_of;
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::touching::Region;
-use crate::rigid::zeno::repeats::{CALM_REPEATS, note_repeat};
+use crate::rigid::ticks::{note_pressed, sinks};
+use crate::rigid::zeno::repeats::note_repeat;
 use halfgap_collision::{BodyId, Collision, ConnectorId, GapState, Zone};
 use halfgap_geometry::FeatureId;
 
 /// Finds the rows that are held at the start.
 pub(crate) fn establish(rooms: &mut Rooms) -> Result<(), AdvanceError> {
     with_work(rooms, Cause::Start, |rooms, work| {
-        work.seeds.clear();
-        work.seeds.extend(rooms.assembly.bodies());
+        work.seed(rooms.assembly.bodies());
         note_corners(&rooms.assembly, &mut rooms.connectors);
         collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
         if !closes_slowly(&rooms.assembly, &work.region) {
@@ -68,9 +67,8 @@ pub(crate) fn handle_contact(
     note_pressed(&rooms.assembly, &mut rooms.sinking, touch)?;
     let repeats = note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair)?;
     with_work(rooms, Cause::Fired(touch), |rooms, work| {
-        work.repeats = repeats.saturating_sub(CALM_REPEATS);
-        work.seeds.clear();
-        work.seeds.extend(bodies);
+        work.note_repeats(repeats);
+        work.seed(bodies);
         handle_impact(rooms, work)
     })
 }
@@ -95,8 +93,7 @@ pub(crate) fn handle_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Adva
 
 fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) -> Result<(), AdvanceError> {
     let Some(group) = group_of(&rooms.assembly, &rooms.groups, leader) else { return Ok(()) };
-    work.seeds.clear();
-    work.seeds.extend(group.bodies());
+    work.seed(group.bodies().iter().copied());
     let Some((_, end)) = group.event() else { return Ok(()) };
     match end {
         SegmentEnd::Release(row) => {
@@ -119,8 +116,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
                 work.region.set_cause(left.map_or(Cause::Other, Cause::RunOff));
                 if let Some(pair) = left.and_then(|left| rooms.pairs.between(left.bodies[0], left.bodies[1]))
                 {
-                    work.repeats = note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair)?
-                        .saturating_sub(CALM_REPEATS);
+                    work.note_repeats(note_repeat(&rooms.assembly, &mut rooms.pairs, &mut rooms.zeno, pair)?);
                 }
                 handle_change(rooms, work)
             }
@@ -155,8 +151,7 @@ fn extend_naturally(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceErro
 /// Handles a rope that goes taut.
 pub(crate) fn handle_rope(rooms: &mut Rooms, id: ConnectorId) -> Result<(), AdvanceError> {
     with_work(rooms, Cause::Taut(id), |rooms, work| {
-        work.seeds.clear();
-        work.seeds.extend(rooms.connectors.connector(id).bodies());
+        work.seed(rooms.connectors.connector(id).bodies());
         handle_impact(rooms, work)
     })
 }

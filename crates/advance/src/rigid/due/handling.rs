@@ -3,11 +3,11 @@
 use crate::rigid::agenda::Source;
 use crate::rigid::books::report::Handled;
 use crate::rigid::contacts::pairs::{PairId, Prediction};
+use crate::rigid::due::events::{handle_contact, handle_group, handle_rope};
 use crate::rigid::error::AdvanceError;
-use crate::rigid::event::events::{handle_contact, handle_group, handle_rope};
 use crate::rigid::event::life::complete_dense;
 use crate::rigid::event::rooms::Rooms;
-use crate::rigid::event::ticks::handle_tick;
+use crate::rigid::ticks::handle_tick;
 use crate::rigid::zeno::turns::note_search;
 use crate::time::Time;
 
