@@ -11,7 +11,7 @@
 //!   that was changed otherwise;
 //! * clarabel: velocity form, building the solver and solving, tolerances 1e-12.
 //!
-//! Then, with `-- held` or without a filter, the parts of `HeldRows` on chains and pyramids; with `-- impact`
+//! Then, with `-- held` or without a filter, the parts of `ActiveRows` on chains and pyramids; with `-- impact`
 //! or without a filter, impacts by each law, rows given anew. Each time is the least mean of some batches.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on should stop")]
 
@@ -24,7 +24,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT};
 use halfgap_collision::BodyId as WorldBody;
 use halfgap_contact::{
-    Auto, CollisionRow, ContactFile, HeldRows, Impact, ImpactLaw, ImpactOrder, InverseInertia, Problem,
+    ActiveRows, Auto, CollisionRow, ContactFile, Impact, ImpactLaw, ImpactOrder, InverseInertia, Problem,
     RowKind, RowsField, Solution, Solver, WarmStart,
 };
 
@@ -53,7 +53,7 @@ fn main() {
     for (name, file) in &cases {
         println!("{}", measure(name, file));
     }
-    if filter.is_empty() || filter == "held" {
+    if filter.is_empty() || filter == "active" {
         measure_held_rows();
     }
     if filter.is_empty() || filter == "impact" {
@@ -64,9 +64,9 @@ fn main() {
 /// Inertia of all bodies: 1.25 kg and a third of a kg m².
 const BLOCK: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
-/// Prints the table of held rows.
+/// Prints the table of active rows.
 fn measure_held_rows() {
-    println!("\n| rows held | n | dependent | factorize | solve | respond |\n|---|---|---|---|---|---|");
+    println!("\n| active rows | n | dependent | factorize | solve | respond |\n|---|---|---|---|---|---|");
     for rows in 1..=3 {
         let sides: Vec<_> = (0..rows).map(|row| [Some(0), (row % 2 == 1).then_some(1)]).collect();
         let row = |row: usize| {
@@ -121,16 +121,16 @@ fn pyramid(layers: u32) -> Scene {
 
 fn measure_held(name: &str, bodies: usize, sides: &[[Option<u32>; 2]], coefficients: &[[f64; 6]]) {
     let n = sides.len();
-    let mut held = HeldRows::default();
-    held.set_structure(&vec![BLOCK; bodies], sides);
-    let dependent = held.factorize(coefficients);
+    let mut active = ActiveRows::default();
+    active.set_structure(&vec![BLOCK; bodies], sides);
+    let dependent = active.factorize(coefficients);
     let offset: Vec<f64> = (0..n).map(|row| (row % 3) as f64 - 9.81).collect();
     let (mut force, mut change) = (vec![0.0; n], vec![[0.0; 3]; bodies]);
     let factorize = least_mean(|| {
-        black_box(held.factorize(black_box(coefficients)));
+        black_box(active.factorize(black_box(coefficients)));
     });
-    let solve = least_mean(|| held.solve(black_box(&offset), black_box(&mut force)));
-    let respond = least_mean(|| held.respond(black_box(&force), black_box(&mut change)));
+    let solve = least_mean(|| active.solve(black_box(&offset), black_box(&mut force)));
+    let respond = least_mean(|| active.respond(black_box(&force), black_box(&mut change)));
     println!("| {name} | {n} | {dependent} | {factorize:.3} | {solve:.3} | {respond:.3} |");
 }
 

@@ -24,7 +24,7 @@ const ROOMS: [&str; 15] = [
     "zeno",
     "region",
     "impact",
-    "held",
+    "active_set",
     "event",
     "ticks",
     "due",

@@ -81,7 +81,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     ),
     (
         425859,
-        "a rope that was held was moved to its length, and what hung on it by a long arm went through a disc",
+        "a rope that was active was moved to its length, and what hung on it by a long arm went through a disc",
     ),
     (
         435547,
@@ -204,7 +204,7 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
     ),
     (
         15_011_546,
-        "dense output had a held contact farther apart than what touches: where it ran off its edge, none took over",
+        "dense output had an active contact farther apart than what touches: where it ran off its edge, none took over",
     ),
     (
         1_903_810,

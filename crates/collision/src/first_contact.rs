@@ -202,7 +202,7 @@ pub struct PairSearch<'a, A, B> {
     pub tolerances: &'a Tolerances,
     /// Limits of the search.
     pub settings: &'a SearchSettings,
-    /// Exceptions for single feature pairs, such as contacts that are held already or have just opened.
+    /// Exceptions for single feature pairs, such as contacts that are active already or have just opened.
     pub rules: &'a [FeatureRule],
 }
 

@@ -59,7 +59,7 @@ impl GapState {
     /// True for a contact: touching at one of the `rates` [m/s], or bilateral.
     ///
     /// An overlap counts, too: a contact without force sinks a little each time it is touched, and is one all the same.
-    /// The range may be lopsided, for a contact that opens is let go where one that closes is held.
+    /// The range may be lopsided, for a contact that opens becomes inactive where one that closes stays active.
     #[must_use]
     #[inline]
     pub fn is_contact(&self, rates: RangeInclusive<f64>) -> bool {

@@ -186,7 +186,7 @@ pub struct Collision {
     /// Restitution, impulse and force.
     pub response: Response,
     /// True if the collision must be handled, however far apart its bodies are by now: it was found penetrating before the
-    /// back-up, or a caller set this, as for the contact that caused an event, or a rope that is held.
+    /// back-up, or a caller set this, as for the contact that caused an event, or a rope that is active.
     pub must_handle: bool,
     /// Time [s] of the last update of geometry and motion.
     pub updated: f64,
@@ -281,7 +281,7 @@ impl Collision {
         }
     }
 
-    /// True for a contact or a connector's row that may be held: one by its gap ([`GapState::is_contact`]), or one that
+    /// True for a contact or a connector's row that may be active: one by its gap ([`GapState::is_contact`]), or one that
     /// must be handled, at whatever gap, if its rate is in `rates` [m/s].
     #[must_use]
     #[inline]

@@ -26,7 +26,7 @@ fn corner(side: f64, elasticity: f64) -> CollisionRow {
         elasticity,
         velocity_tol: 1e-9,
         kind: RowKind::Unilateral,
-        held: false,
+        was_active: false,
         rate: -SPEED,
     }
 }

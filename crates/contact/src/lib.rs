@@ -39,7 +39,7 @@
 //! | `lemke`, `bimatrix`, `dictionary`, `dense_lu`, `twofold` | [`Lemke`], for unsymmetric problems |
 //! | `qp` | `Qp`, feature `qp` (default; on wasm it needs wasm-bindgen): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
-//! | `held_rows` | [`HeldRows`]: a fixed set of rows as equations, solved repeatedly |
+//! | `active_rows` | [`ActiveRows`]: a fixed set of rows as equations, solved repeatedly |
 //! | `row`, `impact` | [`Impact`]: impulses of an impact by an [`ImpactLaw`] |
 //! | `warm` | [`WarmStart`]: carrying an answer over to the next step |
 //! | `json` | feature `json`: problems and answers as files |
@@ -48,6 +48,7 @@
 // Units such as \[N\] are escaped in the docs of this crate, so that all other names in brackets are links.
 #![warn(rustdoc::broken_intra_doc_links)]
 
+mod active_rows;
 mod auto;
 mod bimatrix;
 mod body_factor;
@@ -63,7 +64,6 @@ mod dual_active_set;
 mod entries;
 mod error;
 mod exchanges;
-mod held_rows;
 mod impact;
 mod interior_point;
 mod islands;
@@ -94,12 +94,12 @@ mod twofold;
 mod warm;
 mod words;
 
+pub use active_rows::ActiveRows;
 pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 pub use halfgap_collision as collision;
-pub use held_rows::HeldRows;
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
 pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};

@@ -23,9 +23,9 @@ pub struct CollisionRow {
     pub velocity_tol: f64,
     /// Which rates are allowed: zero (bilateral), or zero and more (unilateral). Impact laws take no other kinds yet.
     pub kind: RowKind,
-    /// True if the row was a held contact before the impact; an opening rate up to `velocity_tol` is then constraint
+    /// True if the row was an active contact before the impact; an opening rate up to `velocity_tol` is then constraint
     /// error, not separation.
-    pub held: bool,
+    pub was_active: bool,
     /// Rate J v before the impact [m/s], negative when closing.
     pub rate: f64,
 }
@@ -45,7 +45,7 @@ impl CollisionRow {
     }
 
     /// Makes a row that comes from no collision record, such as that of a connector: unilateral, without restitution, and
-    /// not held before.
+    /// not active before.
     ///
     /// `jacobian` [1, 1, m, 1, 1, m], `inertia` and `rate` [m/s] (negative when closing) are as the fields of
     /// [`CollisionRow`] tell; the other fields can be set. The background ([`BodyId::WORLD`]) and other immovable bodies
@@ -60,7 +60,7 @@ impl CollisionRow {
             elasticity: 0.0,
             velocity_tol: 0.0,
             kind: RowKind::Unilateral,
-            held: false,
+            was_active: false,
             rate,
         }
     }

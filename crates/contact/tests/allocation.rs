@@ -6,8 +6,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use halfgap_contact::{
-    Auto, CollisionRow, ContactKey, DualActiveSet, HeldRows, Impact, ImpactLaw, ImpactOrder, InverseInertia,
-    Method, Problem, ProblemBody, ProximalNewton, Row, RowKind, Solution, Solver, WarmStart,
+    ActiveRows, Auto, CollisionRow, ContactKey, DualActiveSet, Impact, ImpactLaw, ImpactOrder,
+    InverseInertia, Method, Problem, ProblemBody, ProximalNewton, Row, RowKind, Solution, Solver, WarmStart,
 };
 
 thread_local! {
@@ -165,14 +165,14 @@ fn a_warm_impact_of_known_size_allocates_nothing() {
 }
 
 #[test]
-fn held_rows_of_known_size_allocate_nothing() {
+fn active_rows_of_known_size_allocate_nothing() {
     let inertia = [InverseInertia { inverse_mass: 1.0, inverse_moment: 12.0 }; 30];
     let rows: Vec<[Option<u32>; 2]> =
         (0..60u32).map(|row| [Some(row / 2), (row / 2).checked_sub(1)]).collect();
     let arm = |row: usize| if row.is_multiple_of(2) { [1.0, 0.0, 0.1] } else { [0.0, 1.0, 0.5] };
     let jacobians: Vec<[f64; 6]> = (0..60).map(arm).map(|[x, y, turn]| [x, y, turn, -x, -y, turn]).collect();
     let (mut force, mut change) = ([0.0; 60], [[0.0; 3]; 30]);
-    let mut held = HeldRows::default();
+    let mut active = ActiveRows::default();
     let mut before = 0;
     for step in 0..4 {
         if step == 2 {
@@ -180,10 +180,10 @@ fn held_rows_of_known_size_allocate_nothing() {
         }
         // Fewer rows in between, so that the structure is found anew.
         for count in [60, 20] {
-            held.set_structure(&inertia, &rows[..count]);
-            held.factorize(&jacobians[..count]);
-            held.solve(&[-1.0; 60][..count], &mut force[..count]);
-            held.respond(&force[..count], &mut change);
+            active.set_structure(&inertia, &rows[..count]);
+            active.factorize(&jacobians[..count]);
+            active.solve(&[-1.0; 60][..count], &mut force[..count]);
+            active.respond(&force[..count], &mut change);
         }
     }
     assert_eq!(COUNT.with(Cell::get) - before, 0);

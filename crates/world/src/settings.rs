@@ -102,7 +102,7 @@ impl Integrator {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "scene", derive(serde::Deserialize, serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Stabilization {
-    /// The state at the end of each step is projected onto the held contacts and connectors.
+    /// The state at the end of each step is projected onto the active contacts and connectors.
     #[default]
     Projection,
     /// No stabilization.

@@ -50,7 +50,7 @@ pub struct Statistics {
     pub impacts: u64,
     /// Number of times that an event cut the motion of a body short, in flight or in a group.
     pub backups: u64,
-    /// Number of contact problems solved, and of solves for the forces of held contacts and connectors.
+    /// Number of contact problems solved, and of solves for the forces of active contacts and connectors.
     pub contact_solves: u64,
     /// Smallest gap [m] of a contact seen, at an event or within a step, negative if bodies overlapped; `None` if no
     /// bodies have touched.

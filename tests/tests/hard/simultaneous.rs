@@ -196,7 +196,7 @@ fn ring_at_ceiling(height: f64, tolerance: f64) -> DVec2 {
 
 #[test]
 fn bodies_pressed_together_are_struck_together_whatever_their_steps_err_by() {
-    // Dense output makes held contacts close and open faster than the speed that counts as rest.
+    // Dense output makes active contacts close and open faster than the speed that counts as rest.
     let mut worst = 0.0f64;
     for height in [1.75, 1.8, 1.85, 1.9, 1.95] {
         let exact = ring_at_ceiling(height, 1e-11);
@@ -230,7 +230,7 @@ fn bob_on_dull_rope(speed: f64, tolerance: f64) -> World {
 
 #[test]
 fn a_rope_that_holds_is_struck_with_what_it_holds_whatever_its_steps_err_by() {
-    // Dense output lengthens the rope faster than the speed that counts as rest: the rope is held all the same, and
+    // Dense output lengthens the rope faster than the speed that counts as rest: the rope is active all the same, and
     // passes the blow on.
     let mut worst = 0.0f64;
     for speed in [2.0, 2.3, 2.69, 3.0, 3.4] {

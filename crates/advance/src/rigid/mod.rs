@@ -17,7 +17,7 @@
 //! | `zeno` | is this one event or step too many? |
 //! | `region` | what touches around an event? |
 //! | `impact` | which impulses? |
-//! | `held` | which rows are held afterwards? |
+//! | `active_set` | which rows are active afterwards? |
 //! | `event` | what is done, in which order? |
 //! | `ticks` | what is done where contacts carry impulses only? |
 //! | `due` | which event is it? |
@@ -27,6 +27,7 @@
 //! rare cases, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error` the reasons why an advance
 //! stops.
 
+mod active_set;
 mod agenda;
 mod bodies;
 mod books;
@@ -37,7 +38,6 @@ mod error;
 mod event;
 mod forest;
 mod group;
-mod held;
 mod impact;
 mod parts;
 mod region;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// Corners that pass over each other where two surfaces are flush are left out of the search and of events.
+    /// Corners that pass over each other where two surfaces are flush are excluded from the search and from events.
     GhostCorners,
     /// Features and ropes that turn back by themselves before they touch, near a dead point of a mechanism, are let come nearer.
     DeadPoints,
@@ -23,31 +23,31 @@ pub enum Remedy {
     PassingBy,
     /// Contacts that have stayed within their zone since they were last seen meet without elasticity.
     LowBounces,
-    /// Contacts that open so slowly that forces close them again within the zone are held at once.
+    /// Contacts that open so slowly that forces close them again within the zone become active at once.
     LowHops,
     /// Bodies with more events than forces can resolve are stopped without elasticity.
     Storms,
-    /// In groups whose steps are very short, or that were ended at once, contacts that open ever so slowly are let go.
+    /// In groups whose steps are very short, or that were ended at once, contacts that open ever so slowly become inactive.
     Haste,
     /// A group made anew at the time at which another was ended because a contact pulled may pull again at its start.
     Patience,
-    /// Contacts farther apart than the gap at which bodies fire are left out of impacts whose impulses cancel each other.
+    /// Contacts farther apart than the gap at which bodies fire are excluded from impacts whose impulses cancel each other.
     JammedImpulses,
     /// A point that an impact drives off both sides of its corner is kept on one of them.
     HeldInCorner,
     /// A point that two forces do not hold in its corner leaves that along one of its sides.
     LooseCorner,
-    /// Contacts beyond their target gap are left out where forces exceed all loads by far.
+    /// Contacts beyond their target gap are excluded where forces exceed all loads by far.
     JammedForces,
-    /// Contacts that act by next to no lever on a body held by connectors are let pass.
-    LetPass,
-    /// Contacts that run off at once are left out where two corners hand over to each other without end.
+    /// Contacts that act by next to no lever on a body held by connectors are excluded.
+    Leverless,
+    /// Contacts that run off at once are excluded where two corners hand over to each other without end.
     LeavingNeighbours,
     /// Contradictions that the rounding of bodies at rest explains are taken for no forces.
     RestingContradiction,
-    /// Candidates that depend on others are spared where the rows found would pull as equations.
-    Sparing,
-    /// Contacts that have sunk too deep are lifted as they are held.
+    /// Candidates that depend on others are excluded where the rows found would pull as equations.
+    DependentRows,
+    /// Contacts that have sunk too deep are lifted as they become active.
     Lifting,
     /// Contacts without force that start a segment below their gap by rounding fire at a lower one.
     SunkLowered,
@@ -79,10 +79,10 @@ impl Remedy {
         Self::HeldInCorner,
         Self::LooseCorner,
         Self::JammedForces,
-        Self::LetPass,
+        Self::Leverless,
         Self::LeavingNeighbours,
         Self::RestingContradiction,
-        Self::Sparing,
+        Self::DependentRows,
         Self::Lifting,
         Self::SunkLowered,
         Self::Overtaken,
@@ -110,10 +110,10 @@ impl Remedy {
             Self::HeldInCorner => "held_in_corner",
             Self::LooseCorner => "loose_corner",
             Self::JammedForces => "jammed_forces",
-            Self::LetPass => "let_pass",
+            Self::Leverless => "leverless",
             Self::LeavingNeighbours => "leaving_neighbours",
             Self::RestingContradiction => "resting_contradiction",
-            Self::Sparing => "sparing",
+            Self::DependentRows => "dependent_rows",
             Self::Lifting => "lifting",
             Self::SunkLowered => "sunk_lowered",
             Self::Overtaken => "overtaken",

@@ -23,9 +23,9 @@ pub struct RigidSettings {
     pub method: Method,
     /// Choice of the integrator's steps.
     pub steps: StepControl,
-    /// True if the ends of steps are moved onto the held rows, in position and velocity.
+    /// True if the ends of steps are moved onto the active rows, in position and velocity.
     pub projection: bool,
-    /// Accelerations against the errors of held rows; `None` for none.
+    /// Accelerations against the errors of active rows; `None` for none.
     pub extra: Option<ExtraAcceleration>,
     /// Time [s] after which sunk contacts are put back, if contacts carry impulses only; `None` if they carry forces.
     /// Connectors carry forces either way.
@@ -58,7 +58,7 @@ pub struct StepControl {
     pub largest_step: Option<f64>,
 }
 
-/// Correction of drift by an additional acceleration of each held gap: an older remedy, kept for scenes recorded with
+/// Correction of drift by an additional acceleration of each active gap: an older remedy, kept for scenes recorded with
 /// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]

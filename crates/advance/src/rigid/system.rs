@@ -187,7 +187,7 @@ impl RigidSystem {
         room_to_sink(&self.rooms.assembly, bodies)
     }
 
-    /// Evaluates the forces of all held rows at a time within the present segments. Allocates.
+    /// Evaluates the forces of all active rows at a time within the present segments. Allocates.
     #[must_use]
     pub fn row_forces(&self, time: Time) -> Vec<RowForce> {
         row_forces(&self.rooms.assembly, &self.rooms.connectors, &self.rooms.groups, time)

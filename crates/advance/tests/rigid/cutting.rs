@@ -1,4 +1,4 @@
-//! Events in the middle of steps: contacts are met at their target gap however loose the steps are, and held rows stay
+//! Events in the middle of steps: contacts are met at their target gap however loose the steps are, and active rows stay
 //! where they were.
 
 use crate::box_of_bodies::*;

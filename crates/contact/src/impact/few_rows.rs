@@ -102,7 +102,7 @@ impl FewRows {
         Some(length)
     }
 
-    /// The forces that hold the closed rows, 0 on the others, and one flag per row that is held. Closed rows that
+    /// The forces that hold the closed rows, 0 on the others, and one flag per row that is active. Closed rows that
     /// nearly depend on earlier ones are not held.
     fn hold(&mut self, closed: &[bool; FEW]) -> ([f64; FEW], [bool; FEW]) {
         let mut rows = [0; FEW];

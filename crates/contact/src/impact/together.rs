@@ -30,8 +30,8 @@ impl Impact {
     }
 
     /// Solves problems of all rows until none is violated or the patience ends. Rows that close are to rebound.
-    /// Bilateral rows are held, and so are rows at rest, which count as such up to an opening rate of `rest` [m/s]: a
-    /// row that was held has some rate of either sign.
+    /// Bilateral rows are active, and so are rows at rest, which count as such up to an opening rate of `rest` [m/s]: a
+    /// row that was active has some rate of either sign.
     ///
     /// A row that opens stays out of the problem, even if the impulses turn it round, because holding it would add
     /// energy. If it then closes, the next round solves it with all others that close. Where rows nearly depend on each
@@ -139,12 +139,13 @@ impl Impact {
         if set.len() > 2 { self.solve_many(set, begin) } else { self.solve_together(set) }
     }
 
-    /// Lists the bilateral rows, the rows that close or open no faster than `rest` [m/s], and the rows that were held
+    /// Lists the bilateral rows, the rows that close or open no faster than `rest` [m/s], and the rows that were active
     /// before the impact and open no faster than their `velocity_tol`.
     pub(super) fn list_held(&self, set: &mut Vec<usize>, rest: f64) {
         let limit = self.rest(rest);
-        let is_slow =
-            |row: &CollisionRow, rate| rate <= if row.held { limit.max(row.velocity_tol) } else { limit };
+        let is_slow = |row: &CollisionRow, rate| {
+            rate <= if row.was_active { limit.max(row.velocity_tol) } else { limit }
+        };
         let is_held = |&index: &usize| {
             let row = &self.rows[index];
             (row.is_bilateral() || is_slow(row, self.rates[index])) && self.can_move(index)
@@ -255,9 +256,9 @@ mod tests {
             velocity_tol: 1e-6,
             ..CollisionRow::new([BodyId(place + 1), BodyId(place)], jacobian, [disc; 2], rate)
         };
-        let strike = |rate: f64, held: bool| {
+        let strike = |rate: f64, was_active: bool| {
             let mut impact = Impact::new();
-            impact.set_rows([row(0, -1.0), CollisionRow { held, ..row(1, rate) }]);
+            impact.set_rows([row(0, -1.0), CollisionRow { was_active, ..row(1, rate) }]);
             ImpactLaw::Simultaneous.resolve(&mut impact, ImpactOrder::Fastest, 0)?;
             Ok([impact.rates()[0], impact.rates()[1]])
         };
@@ -267,7 +268,7 @@ mod tests {
             at_rest.iter().zip(opening).all(|(rest, opening)| (rest - opening).abs() < 1e-6),
             "{opening:?}"
         );
-        // A row that opens faster than `velocity_tol`, or was not held, is driven to close later, and opens.
+        // A row that opens faster than `velocity_tol`, or was not active, is driven to close later, and opens.
         assert!(strike(1e-5, true)?[1] > 0.5 && strike(1e-7, false)?[1] > 0.5);
         Ok(())
     }

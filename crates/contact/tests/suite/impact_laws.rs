@@ -45,7 +45,7 @@ impl Touch {
             elasticity: self.elasticity,
             velocity_tol: 1e-9,
             kind: RowKind::Unilateral,
-            held: false,
+            was_active: false,
             rate: (0..6).map(|k| jacobian[k] * side(k).velocity[k % 3]).sum(),
         }
     }
@@ -229,7 +229,7 @@ fn a_block_landing_flat_loads_both_corners_alike_when_solved_together() {
 }
 
 #[test]
-fn held_rows_at_rest_take_part_in_a_simultaneous_impact() {
+fn active_rows_at_rest_take_part_in_a_simultaneous_impact() {
     // Three equal discs in a row, the last two at rest and touching: solved together they leave together.
     let mover = |velocity: f64| Mover { inverse: [1.0, 1.0, 2.0], velocity: [velocity, 0.0, 0.0] };
     let movers = [mover(1.0), mover(0.0), mover(0.0)];
@@ -269,7 +269,7 @@ fn a_line_of_nearly_elastic_discs_does_nearly_as_elastic_ones_do() {
 
 #[test]
 fn a_row_that_opens_by_rounding_rests_in_a_simultaneous_impact() {
-    // The first disc strikes the second, which touches a third: by the rounding of a held contact these two open, or
+    // The first disc strikes the second, which touches a third: by the rounding of an active contact these two open, or
     // close, a little.
     let mover = |velocity: f64| Mover { inverse: [1.0, 1.0, 2.0], velocity: [velocity, 0.0, 0.0] };
     let touch = |bodies| Touch { bodies, angle: std::f64::consts::PI, moments: [0.0; 2], elasticity: 1.0 };

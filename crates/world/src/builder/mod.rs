@@ -41,7 +41,7 @@ const LOST_ROUNDINGS: f64 = 1e4;
 /// Time [s] that stands for the duration of a run that is not known, where bodies that move by less than a rounding of
 /// their coordinates count as still.
 const TIME_TO_MOVE: f64 = 1.0;
-/// Distance along which the work of the forces is lost to the accuracy of held rows, in tolerances of a body's size.
+/// Distance along which the work of the forces is lost to the accuracy of active rows, in tolerances of a body's size.
 const LOST_TOLERANCES: f64 = 10.0;
 
 /// A body to be added to a world.

@@ -17,7 +17,7 @@ use halfgap_contact::InverseInertia;
 pub(crate) struct Shared {
     /// Time at which the segment ends.
     pub(crate) end: Time,
-    /// Penetration [m] of the deepest held contact; 0 if there is none.
+    /// Penetration [m] of the deepest active contact; 0 if there is none.
     pub(crate) depth: f64,
     /// Largest error [m] of a connector.
     pub(crate) largest_error: f64,
@@ -181,7 +181,7 @@ impl Assembly {
 
     /// Depth [m] to which two bodies may lie in one another, as the contacts of a group do that one of them is in, or
     /// was in until now. A contact that takes over from a sunk one lies as deep.
-    pub(crate) fn held_depth(&self, bodies: [BodyId; 2]) -> f64 {
+    pub(crate) fn active_depth(&self, bodies: [BodyId; 2]) -> f64 {
         let depths = bodies.map(|body| match self.shared_by(body) {
             Some(shared) => shared.depth,
             None => {

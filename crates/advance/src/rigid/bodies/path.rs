@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn motion_and_bounds_of_a_segment_are_those_of_its_polynomials() {
         let mut rooms = block_on_its_corner();
-        let group = rooms.groups.take(BodyId(1)).expect("it is held");
+        let group = rooms.groups.take(BodyId(1)).expect("it is in a group");
         let mut dense = DensePath::default();
         for part in [1.0, 0.7, 0.1, 0.0] {
             let span = part * group.span();

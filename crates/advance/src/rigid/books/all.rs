@@ -72,7 +72,7 @@ impl Books {
         self.told.last_impact = report;
     }
 
-    /// Notes a unilateral row that is held from now on.
+    /// Notes a unilateral row that is active from now on.
     pub(crate) fn begin_contact(&mut self, row: RowForce) {
         self.told.changes.begin.push(row);
     }

@@ -12,7 +12,7 @@ pub struct Counts {
     pub impacts: u64,
     /// Times that an event cut the motion of a body short, in flight or in a group.
     pub backups: u64,
-    /// Complementarity problems solved, and solves for the forces of held rows.
+    /// Complementarity problems solved, and solves for the forces of active rows.
     pub contact_solves: u64,
     /// Evaluations of forces by the integrator.
     pub evaluations: u64,

@@ -1,10 +1,10 @@
-//! The forces of held rows, for callers.
+//! The forces of active rows, for callers.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::RowForce;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::physics::physics;
@@ -12,7 +12,7 @@ use crate::rigid::group::state::Group;
 use crate::time::Time;
 use halfgap_collision::Moving;
 
-/// Evaluates the forces of all held rows at a time within the present segments. Allocates.
+/// Evaluates the forces of all active rows at a time within the present segments. Allocates.
 #[must_use]
 pub(crate) fn row_forces(
     assembly: &Assembly,
@@ -36,7 +36,7 @@ pub(crate) fn row_forces(
 fn row_force(
     assembly: &Assembly,
     connectors: &Connectors,
-    row: &HeldRow,
+    row: &ActiveRow,
     movings: &[Moving],
     force: f64,
 ) -> RowForce {

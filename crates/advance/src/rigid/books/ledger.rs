@@ -10,7 +10,7 @@ pub struct Ledger {
     pub impacts: f64,
     /// Slow closing contacts that were brought to rest, and storms of impacts that were ended without elasticity.
     pub captures: f64,
-    /// Projections onto held rows.
+    /// Projections onto active rows.
     pub projections: f64,
     /// Velocity changes by the caller, see [`RigidSystem::intervene`].
     pub interventions: f64,

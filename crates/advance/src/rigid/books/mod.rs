@@ -4,7 +4,7 @@
 //! nothing.
 //!
 //! `all`: the books of a system · `counts`, `ledger`, `report`: their parts · `works`: the ledger within present segments ·
-//! `forces`: those of held rows · `impacts`, `energy`: what is booked when.
+//! `forces`: those of active rows · `impacts`, `energy`: what is booked when.
 
 pub(super) mod all;
 pub(super) mod counts;

@@ -6,7 +6,7 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId};
 use halfgap_geometry::FeatureId;
 
-/// Force of one held row: a contact, or one direction of a connector.
+/// Force of one active row: a contact, or one direction of a connector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct RowForce {
@@ -53,9 +53,9 @@ pub(crate) struct Told {
 pub struct ContactChanges {
     /// Time of the event.
     pub time: Time,
-    /// Rows that are held from this event on.
+    /// Rows that are active from this event on.
     pub begin: Vec<RowForce>,
-    /// Rows that are held no longer, each with its last force.
+    /// Rows that are active no longer, each with its last force.
     pub end: Vec<RowForce>,
 }
 

@@ -52,8 +52,8 @@ pub(crate) struct ConnectorState {
     /// Excess length [m] that a rope is given while it is at its length and does not tighten: it goes taut at the sum
     /// of both.
     pub(super) slack: f64,
-    /// True if it is unilateral and held: its row then takes part in events at any gap.
-    pub(super) held: bool,
+    /// True if it is unilateral and active: its row then takes part in events at any gap.
+    pub(super) active: bool,
     /// Time at which the rope last went taut, or the stop was met.
     pub(super) last_taut: Option<Time>,
     /// Number of times that it did so before without time going by.
@@ -88,10 +88,10 @@ impl ConnectorState {
 }
 
 impl Connectors {
-    /// True if unilateral rows of a connector were held until now.
-    pub(crate) fn is_held_unilaterally(&self, id: ConnectorId) -> bool {
+    /// True if unilateral rows of a connector were active until now.
+    pub(crate) fn is_active_unilaterally(&self, id: ConnectorId) -> bool {
         let state = &self.states[id.index()];
-        state.held || state.corner.is_some()
+        state.active || state.corner.is_some()
     }
 
     pub(crate) fn connector(&self, id: ConnectorId) -> &Connector {
@@ -196,7 +196,7 @@ pub(crate) fn rope_of(connector: &Connector) -> Option<Rope> {
     }
 }
 
-/// A stop of a rail that is not held.
+/// A stop of a rail that is not active.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stop {
@@ -227,9 +227,9 @@ impl Connectors {
         self.states[id.index()].is_watched
     }
 
-    /// Notes whether a unilateral connector is held.
-    pub(crate) fn set_held(&mut self, id: ConnectorId, held: bool) {
-        self.states[id.index()].held = held;
+    /// Notes whether a unilateral connector is active.
+    pub(crate) fn set_active(&mut self, id: ConnectorId, active: bool) {
+        self.states[id.index()].active = active;
     }
 
     /// Notes that a rope has gone taut, or a stop is met, at a time.
@@ -301,10 +301,10 @@ impl ConnectorState {
         self.corner
     }
 
-    /// True if it is unilateral and held: its row then takes part in events at any gap.
+    /// True if it is unilateral and active: its row then takes part in events at any gap.
     #[inline]
-    pub(crate) fn held(&self) -> bool {
-        self.held
+    pub(crate) fn active(&self) -> bool {
+        self.active
     }
 
     /// Place of its point on a rail.

@@ -1,14 +1,14 @@
-//! How far a held row is from running off its features, or its piece of a rail.
+//! How far an active row is from running off its features, or its piece of a rail.
 
 use crate::rigid::connectors::ends::rail_room;
-use crate::rigid::contacts::rows::{CHANGE_SHARE, HeldRow, Mechanism, RowSource, moving_of};
+use crate::rigid::contacts::rows::{ActiveRow, CHANGE_SHARE, Mechanism, RowSource, moving_of};
 use halfgap_collision::{BodyId, Moving, contact_levers};
 use halfgap_geometry::{Feature, FeatureId, GapSample};
 
 impl Mechanism<'_> {
-    /// Distance [m] from a held row to the end of its features or its piece of a rail; negative once it has run off.
+    /// Distance [m] from an active row to the end of its features or its piece of a rail; negative once it has run off.
     /// `None` for rows that cannot.
-    pub(crate) fn way_to_end(&self, row: &HeldRow, movings: &[Moving]) -> Option<f64> {
+    pub(crate) fn way_to_end(&self, row: &ActiveRow, movings: &[Moving]) -> Option<f64> {
         if !self.can_change(row) {
             return None;
         }
@@ -34,7 +34,7 @@ impl Mechanism<'_> {
     fn inside(
         &self,
         sample: &GapSample,
-        row: &HeldRow,
+        row: &ActiveRow,
         features: [FeatureId; 2],
         movings: [&Moving; 2],
     ) -> f64 {
@@ -79,7 +79,7 @@ impl Mechanism<'_> {
     }
 
     /// True if a row is a corner that leans off its line already: leaning further is no change.
-    pub(crate) fn leans(&self, row: &HeldRow, movings: [&Moving; 2]) -> bool {
+    pub(crate) fn leans(&self, row: &ActiveRow, movings: [&Moving; 2]) -> bool {
         let RowSource::Contact(features) = row.source else { return false };
         let sample = self.sample(row.bodies, features, movings);
         if !self.is_corner_on_line(&sample, row.bodies, features, movings) {

@@ -237,19 +237,19 @@ impl Pairs {
     }
 }
 
-/// True if a contact is held or watched now, so that the search skips it.
-pub(crate) fn is_held_contact(pairs: &Pairs, record: &Collision, bodies: [BodyId; 2]) -> bool {
+/// True if a contact is active or watched now, so that the search skips it.
+pub(crate) fn is_active_contact(pairs: &Pairs, record: &Collision, bodies: [BodyId; 2]) -> bool {
     let (Some(touch), Some(pair)) = (touch_of(record, bodies), pairs.between(bodies[0], bodies[1])) else {
         return false;
     };
     matches!(pairs.mode(pair, touch.features), Some(Mode::Active | Mode::Idle | Mode::Passed))
 }
 
-/// `Some(true)` if a record is likely to carry a force, since its contact is held until now; `None` if nothing is
+/// `Some(true)` if a record is likely to carry a force, since its contact is active until now; `None` if nothing is
 /// known.
 pub(crate) fn is_likely(pairs: &Pairs, record: &Collision) -> Option<bool> {
     let [a, b] = record.bodies();
-    is_held_contact(pairs, record, sorted(a, b)).then_some(true)
+    is_active_contact(pairs, record, sorted(a, b)).then_some(true)
 }
 
 impl PairPast {

@@ -26,10 +26,10 @@ pub(crate) enum RowSource {
     Connector(ConnectorId, usize),
 }
 
-/// A held row: its gap is kept as it is.
+/// An active row: its gap is kept as it is.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct HeldRow {
+pub(crate) struct ActiveRow {
     pub(crate) source: RowSource,
     /// The primary and the normal body.
     pub(crate) bodies: [BodyId; 2],
@@ -77,7 +77,7 @@ impl Mechanism<'_> {
 
     /// Gap and kinematics of a row.
     #[inline]
-    pub(crate) fn measure(&self, row: &HeldRow, movings: &[Moving]) -> RowMoment {
+    pub(crate) fn measure(&self, row: &ActiveRow, movings: &[Moving]) -> RowMoment {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, index) => {
@@ -89,7 +89,7 @@ impl Mechanism<'_> {
     }
 
     /// Gap [m] of a row; depends only on the poses of the bodies.
-    pub(crate) fn gap(&self, row: &HeldRow, movings: &[Moving]) -> f64 {
+    pub(crate) fn gap(&self, row: &ActiveRow, movings: &[Moving]) -> f64 {
         let RowSource::Contact(features) = row.source else { return self.measure(row, movings).gap };
         self.sample_here(row.bodies, features, row.bodies.map(|body| moving_of(movings, body))).gap
     }
@@ -112,7 +112,7 @@ impl Mechanism<'_> {
     #[inline]
     pub(crate) fn measure_next(
         &self,
-        row: &HeldRow,
+        row: &ActiveRow,
         movings: &[Moving],
         twin: &mut Option<(ConnectorId, RowMoment)>,
     ) -> RowMoment {
@@ -152,7 +152,7 @@ impl Mechanism<'_> {
     }
 
     /// True if a row may run off its features or its piece of a rail.
-    pub(crate) fn can_change(&self, row: &HeldRow) -> bool {
+    pub(crate) fn can_change(&self, row: &ActiveRow) -> bool {
         match row.source {
             RowSource::Contact(features) => {
                 // Full circles have no ends.
@@ -167,13 +167,13 @@ impl Mechanism<'_> {
     }
 
     /// True for one side of a corner of a rail in which its point rests: such a row only pushes.
-    pub(crate) fn is_in_corner(&self, row: &HeldRow) -> bool {
+    pub(crate) fn is_in_corner(&self, row: &ActiveRow) -> bool {
         let RowSource::Connector(id, _) = row.source else { return false };
         !row.bilateral && self.connectors[id.index()].is_bilateral()
     }
 
     /// Point [m] in the world at which a row's force acts on its primary body, and the normal.
-    pub(crate) fn locate(&self, row: &HeldRow, movings: &[Moving]) -> (DVec2, DVec2) {
+    pub(crate) fn locate(&self, row: &ActiveRow, movings: &[Moving]) -> (DVec2, DVec2) {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, index) => {
@@ -211,9 +211,14 @@ pub(crate) fn row_of(assembly: &Assembly, record: &Collision) -> CollisionRow {
 }
 
 /// A row with `leans` set as it is at a time.
-pub(crate) fn with_lean(assembly: &Assembly, connectors: &Connectors, row: HeldRow, time: Time) -> HeldRow {
+pub(crate) fn with_lean(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    row: ActiveRow,
+    time: Time,
+) -> ActiveRow {
     let movings = row.bodies.map(|body| assembly.moving_at(body, time));
-    HeldRow { leans: mechanism(assembly, connectors).leans(&row, [&movings[0], &movings[1]]), ..row }
+    ActiveRow { leans: mechanism(assembly, connectors).leans(&row, [&movings[0], &movings[1]]), ..row }
 }
 
 /// Bodies, connectors and tolerances by which rows are measured.
@@ -225,7 +230,7 @@ pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) 
     }
 }
 
-impl HeldRow {
+impl ActiveRow {
     /// Sets the gap [m] at which it is held, or fires.
     pub(crate) fn set_gap(&mut self, gap: f64) {
         self.gap = gap;
@@ -257,13 +262,13 @@ mod tests {
     fn a_corner_leans_by_what_it_is_long_itself_whichever_body_is_named_first() {
         // A round corner with a radius of 0.1 m on a floor of 20 m, which is body 0.
         let rooms = block_on_its_corner();
-        let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is held");
-        let row = HeldRow { leans: false, ..group.rows()[0] };
+        let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is in a group");
+        let row = ActiveRow { leans: false, ..group.rows()[0] };
         let RowSource::Contact([first, second]) = row.source else { panic!("it is a contact") };
         let source = RowSource::Contact([second, first]);
-        let swapped = HeldRow { bodies: [row.bodies[1], row.bodies[0]], source, ..row };
+        let swapped = ActiveRow { bodies: [row.bodies[1], row.bodies[0]], source, ..row };
         let mechanism = mechanism(&rooms.assembly, &rooms.connectors);
-        let room = |row: &HeldRow, lean: f64| {
+        let room = |row: &ActiveRow, lean: f64| {
             let mut movings =
                 [0, 1].map(|body| rooms.assembly.trajectory(BodyId(body)).moving_at(rooms.assembly.now()));
             let position = movings[1].pose.position;

@@ -8,10 +8,10 @@
 //! | it fires again and again at one time | [`Mode::Open`], lower by more each time |
 //! | an event has left it without force at rest, in a group | [`Mode::Idle`] |
 //! | it belongs to corners that pass over each other | [`Mode::Passed`] |
-//! | its row is held | [`Mode::Active`] |
+//! | its row is active | [`Mode::Active`] |
 //!
 //! An event forgets the modes of all contacts of its bodies, and gives the touching ones new ones once it knows which rows
-//! are held. The rules of the search are a view of the modes.
+//! are active. The rules of the search are a view of the modes.
 
 use crate::rigid::contacts::pairs::{PairId, Pairs};
 use crate::time::Time;
@@ -32,7 +32,7 @@ pub(crate) enum Mode {
     Idle,
     /// It is no contact of the surfaces, though its features come near: nothing looks at it.
     Passed,
-    /// It is held by the row of a group, and carries its force.
+    /// It is a row of a group, and carries its force.
     Active,
 }
 

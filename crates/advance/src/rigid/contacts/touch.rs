@@ -37,6 +37,6 @@ pub(crate) fn touch_of(record: &Collision, bodies: [BodyId; 2]) -> Option<Touch>
     Touch::of(record).filter(|touch| touch.bodies == bodies)
 }
 
-/// Largest penetration of a held contact whose zone cannot be seen, as a multiple of the target gap: a deeper one is
+/// Largest penetration of an active contact whose zone cannot be seen, as a multiple of the target gap: a deeper one is
 /// lifted to it.
 pub(crate) const DEEPEST: f64 = 0.5;

@@ -10,7 +10,7 @@ use crate::rigid::due::joints::{meet_stop, pass_joint};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::changing::handle_change;
 use crate::rigid::event::going_on::go_on;
-use crate::rigid::event::groups::let_go;
+use crate::rigid::event::groups::release_parted;
 use crate::rigid::event::impacting::{collide, handle_impact};
 use crate::rigid::event::life::{continue_group, look_further};
 use crate::rigid::event::rooms::{Rooms, with_work};
@@ -25,7 +25,7 @@ use crate::rigid::zeno::repeats::note_repeat;
 use halfgap_collision::{BodyId, Collision, ConnectorId, GapState, Zone};
 use halfgap_geometry::FeatureId;
 
-/// Finds the rows that are held at the start.
+/// Finds the rows that are active at the start.
 pub(crate) fn establish(rooms: &mut Rooms) -> Result<(), AdvanceError> {
     with_work(rooms, Cause::Start, |rooms, work| {
         work.seed(rooms.assembly.bodies());
@@ -133,7 +133,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
 }
 
 fn extend_naturally(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
-    let_go(rooms, leader);
+    release_parted(rooms, leader);
     continue_group(rooms, leader)?;
     let mut bodies = rooms.groups.take_extended();
     bodies.extend(

@@ -1,5 +1,6 @@
-//! An event in which held rows change without an impact, unless other contacts close.
+//! An event in which active rows change without an impact, unless other contacts close.
 
+use crate::rigid::active_set::leaving::retain_staying;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::AdvanceError;
@@ -8,13 +9,12 @@ use crate::rigid::event::going_on::go_on;
 use crate::rigid::event::impacting::{collect_again, collide};
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
-use crate::rigid::held::leaving::retain_staying;
 use crate::rigid::region::collecting::{collect_region, passes_by};
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::remedies::Remedy;
 
-/// Handles a change of the held rows. Other contacts that close within their target zones make it an impact.
+/// Handles a change of the active rows. Other contacts that close within their target zones make it an impact.
 pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
     cut_groups(rooms, &mut work.region);

@@ -1,5 +1,6 @@
 //! Points of rails that rest in a corner and are not held there by two forces: they leave it along one of its sides.
 
+use crate::rigid::active_set::settle::accelerations_of;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::impacts::{Booking, book_impact};
 use crate::rigid::connectors::store::Connectors;
@@ -8,7 +9,6 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::event::resolving::resolve_impact;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
-use crate::rigid::held::settle::accelerations_of;
 use crate::rigid::impact::corners::{Corner, corners, take_side, take_slower};
 use crate::rigid::impact::impacts::Manner;
 use crate::rigid::region::records::remeasure;
@@ -20,9 +20,9 @@ use halfgap_collision::{Collision, ConnectorId};
 /// Puts a point that two forces do not hold in its corner on one of the sides, and stops its velocity across that
 /// side. True if there is such a point: forces are to be found anew.
 pub(crate) fn leave_loose_corner(rooms: &mut Rooms, work: &mut EventWork) -> Result<bool, AdvanceError> {
-    let held = work.settling.held();
+    let active = work.settling.active();
     let sides = |id: ConnectorId| {
-        [0, 1].map(|side| held.iter().any(|(_, row)| row.source == RowSource::Connector(id, side)))
+        [0, 1].map(|side| active.iter().any(|(_, row)| row.source == RowSource::Connector(id, side)))
     };
     let is_loose = |corner: &Corner| {
         sides(corner.id) != [true; 2]

@@ -1,9 +1,9 @@
-//! Which places of a region share their steps: held rows, force laws and contacts without force couple them.
+//! Which places of a region share their steps: active rows, force laws and contacts without force couple them.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::forest::Forest;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 
 /// Buffers for the sets of places that share their steps.
@@ -52,7 +52,7 @@ pub(crate) fn couple(
 ) {
     let count = region.bodies().len();
     coupling.reset(count);
-    for (_, row) in settling.held() {
+    for (_, row) in settling.active() {
         coupling.join(row.bodies.iter().filter_map(|&body| region.place(body)));
     }
     for &body in region.bodies() {
@@ -84,7 +84,7 @@ fn couple_touching(assembly: &Assembly, coupling: &mut Coupling, region: &Region
     }
     let rest = assembly.rest_speed();
     for (&touch, gap) in region.touches().iter().zip(region.motions()) {
-        if !gap.rests(rest) || settling.holds_touch(touch) {
+        if !gap.rests(rest) || settling.is_active(touch) {
             continue;
         }
         let mut places = touch.bodies.into_iter().filter_map(|body| region.place(body));

@@ -1,5 +1,6 @@
-//! How an event goes on once velocities are known: held rows, groups, predictions.
+//! How an event goes on once velocities are known: active rows, groups, predictions.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::instant::is_same_time;
 use crate::rigid::books::all::Books;
@@ -16,21 +17,20 @@ use crate::rigid::event::rules::{lower_insistent, set_rules};
 use crate::rigid::event::settling::settle_and_still;
 use crate::rigid::event::telling::note_begins;
 use crate::rigid::event::work::EventWork;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::remedies::Remedy;
 use crate::rigid::zeno::pace::take_haste;
 use crate::rigid::zeno::repeats::has_pulled;
 use halfgap_geometry::GapSample;
 
-/// Finds the held rows, makes groups, and predicts: the bodies of the region are in flight with their new
+/// Finds the active rows, makes groups, and predicts: the bodies of the region are in flight with their new
 /// velocities.
 pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     for &body in work.region.bodies() {
         rooms.assembly.trajectory_mut(body).unwind();
     }
     note_rails(&rooms.assembly, &mut rooms.connectors, &work.region, rooms.assembly.now());
-    // Contacts that open slowly are let go, too, where the group that held them pulled: held, they move others along.
+    // Contacts that open slowly become inactive, too, where their group pulled: active, they move others along.
     let is_hasty =
         take_haste(&mut rooms.zeno, work.region.bodies()) || has_pulled(&rooms.zeno, rooms.assembly.now());
     let is_hasty = is_hasty && rooms.assembly.remedies().act(Remedy::Haste);
@@ -56,7 +56,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
         rooms.searching().renew_stay(body);
     }
     rooms.searching().predict_all_of(work.region.bodies(), true);
-    note_held_connectors(&mut rooms.connectors, &work.region, &work.settling);
+    note_active_connectors(&mut rooms.connectors, &work.region, &work.settling);
     rooms.searching().predict_ropes(work.region.bodies());
     Ok(())
 }
@@ -78,15 +78,15 @@ fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
     }
 }
 
-/// Notes which unilateral connectors of a region are held from now on.
-fn note_held_connectors(connectors: &mut Connectors, region: &Region, settling: &Settling) {
+/// Notes which unilateral connectors of a region are active from now on.
+fn note_active_connectors(connectors: &mut Connectors, region: &Region, settling: &Settling) {
     for &body in region.bodies() {
         for index in 0..connectors.of(body).len() {
             let id = connectors.of(body)[index];
             if !connectors.connector(id).is_bilateral() {
-                let mut held = settling.held().iter();
-                let is_held = held.any(|(_, row)| row.source == RowSource::Connector(id, 0));
-                connectors.set_held(id, is_held);
+                let mut active = settling.active().iter();
+                let is_held = active.any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                connectors.set_active(id, is_held);
             }
         }
     }

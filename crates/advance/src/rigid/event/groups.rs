@@ -1,10 +1,11 @@
-//! Groups are made of the bodies of a region that held rows or force laws couple, and hand back what they watch in vain.
+//! Groups are made of the bodies of a region that active rows or force laws couple, and hand back what they watch in vain.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::{Connectors, is_rope};
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::pairs::Prediction;
-use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism, with_lean};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism, with_lean};
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::coupling::couple;
@@ -13,11 +14,10 @@ use crate::rigid::event::members::Members;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::groups::{Groups, group_of, put_group};
 use crate::rigid::group::state::Group;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use halfgap_collision::{BodyId, GapState, Zone};
 
-/// Makes groups of the bodies of a region that held rows or force laws couple; the others stay in flight.
+/// Makes groups of the bodies of a region that active rows or force laws couple; the others stay in flight.
 pub(crate) fn regroup(rooms: &mut Rooms, region: &Region, settling: &Settling) -> Result<(), AdvanceError> {
     let mut coupling = std::mem::take(&mut rooms.coupling);
     couple(&rooms.assembly, &rooms.connectors, &mut coupling, region, settling);
@@ -52,7 +52,10 @@ fn make_group(rooms: &mut Rooms, of: (&Region, &Settling), members: &Members, ro
     let (region, settling) = of;
     let mut group = rooms.groups.take_empty();
     let (assembly, connectors) = (&rooms.assembly, &rooms.connectors);
-    group.set_members(members.places(root).map(|place| region.bodies()[place]), members.held(settling, root));
+    group.set_members(
+        members.places(root).map(|place| region.bodies()[place]),
+        members.active(settling, root),
+    );
     list_idle(assembly, connectors, &mut group, of, members.touches(root));
     group.list_stops(assembly, connectors);
     group.list_laws(assembly);
@@ -78,7 +81,7 @@ fn list_idle(
         let (touch, gap) = (region.touches()[index], region.motions()[index]);
         let is_inside = |body: BodyId| group.bodies().binary_search(&body).is_ok();
         let belongs = |body: BodyId| is_inside(body) || !assembly.is_movable(body);
-        if !touch.bodies.iter().all(|&body| belongs(body)) || settling.holds_touch(touch) {
+        if !touch.bodies.iter().all(|&body| belongs(body)) || settling.is_active(touch) {
             continue;
         }
         if gap.rests(assembly.rest_speed()) {
@@ -86,7 +89,7 @@ fn list_idle(
             let source = RowSource::Contact(touch.features);
             let bodies = touch.bodies;
             let (hint, leans) = (None, false);
-            let row = HeldRow { source, bodies, bilateral: false, gap, hint, leans };
+            let row = ActiveRow { source, bodies, bilateral: false, gap, hint, leans };
             group.add_idle(with_lean(assembly, connectors, row, assembly.now()));
         }
     }
@@ -103,7 +106,7 @@ pub(crate) fn is_watched(assembly: &Assembly, groups: &Groups, touch: Touch) -> 
 /// Hands back to the search the idle contacts of a group that have opened beyond the target zone, have run as far
 /// off their features, or have gone round their bodies and lie behind them, and the ropes that have slackened as
 /// much.
-pub(crate) fn let_go(rooms: &mut Rooms, leader: BodyId) {
+pub(crate) fn release_parted(rooms: &mut Rooms, leader: BodyId) {
     let Some(mut group) = rooms.groups.take(leader) else { return };
     let opened =
         rooms.assembly.settings().tolerances.target_gap + rooms.assembly.settings().tolerances.accuracy;
@@ -151,7 +154,7 @@ mod tests {
     fn how_deep_a_contact_has_sunk_holds_of_its_bodies_until_something_else_happens() {
         let mut rooms = resting_discs(&[0.0, 1.5]);
         let gap = rooms.assembly.settings().tolerances.target_gap;
-        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is in a group");
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.extend(tools).expect("it rests");
             dynamics.group.state_mut()[1] -= 4.0 * gap;
@@ -161,12 +164,12 @@ mod tests {
         });
         put_group(&mut rooms.assembly, &mut rooms.connectors, &mut rooms.groups, group);
         let [floor, sunk, other] = [0, 1, 2].map(BodyId);
-        assert!((rooms.assembly.held_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
-        assert_eq!(rooms.assembly.held_depth([floor, other]), 0.0);
+        assert!((rooms.assembly.active_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
+        assert_eq!(rooms.assembly.active_depth([floor, other]), 0.0);
         dissolve(&mut rooms, sunk);
-        assert!((rooms.assembly.held_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
+        assert!((rooms.assembly.active_depth([floor, sunk]) / gap - 6.0).abs() < 1e-6);
         let later = rooms.assembly.now().plus(1e-3);
         rooms.assembly.set_now(later);
-        assert_eq!(rooms.assembly.held_depth([floor, sunk]), 0.0);
+        assert_eq!(rooms.assembly.active_depth([floor, sunk]), 0.0);
     }
 }

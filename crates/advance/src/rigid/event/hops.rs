@@ -1,5 +1,6 @@
 //! Hops that are stilled: their bodies get the velocities that they will have after the landing.
 
+use crate::rigid::active_set::hops::{force_of, opens, time_of_hops};
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::impacts::{Booking, book_impact};
@@ -7,15 +8,14 @@ use crate::rigid::connectors::corners::stays_in_corner;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::event::work::EventWork;
-use crate::rigid::held::hops::{force_of, opens, time_of_hops};
 use crate::rigid::impact::impacts::{conclude_impact, set_rows};
 use crate::rigid::region::records::remeasure;
 use crate::rigid::remedies::Remedy;
 
-/// Gives the bodies of held contacts that open in low hops the velocities that they will have after the landing,
+/// Gives the bodies of active contacts that open in low hops the velocities that they will have after the landing,
 /// and lets contacts leave that open all the same. False if nothing is changed.
 ///
-/// The impulse of each held contact until the landing follows from its force. These impulses are taken away, so
+/// The impulse of each active contact until the landing follows from its force. These impulses are taken away, so
 /// that the hops come down at once, and an impact without elasticity returns as much of them as is needed. So a
 /// contact is stopped by no more than what presses on it: where normals hardly differ, large impulses that cancel
 /// each other would also stop a body that slides over the contacts.
@@ -35,7 +35,7 @@ pub(crate) fn still_hops(
     let EventWork { region, impact, settling, carried, stop, .. } = &mut *work;
     carried.clear();
     carried.resize(region.records().len(), 0.0);
-    for &(index, _) in settling.held() {
+    for &(index, _) in settling.active() {
         let record = &region.records()[index];
         carried[index] = if record.parties.bilateral { 0.0 } else { force_of(record) * wait };
     }

@@ -1,8 +1,8 @@
-//! Members of the groups that are made from a region: bodies, held rows and touching features. They are listed once for
+//! Members of the groups that are made from a region: bodies, active rows and touching features. They are listed once for
 //! all groups, as there may be as many groups as bodies.
 
-use crate::rigid::contacts::rows::HeldRow;
-use crate::rigid::held::settling::Settling;
+use crate::rigid::active_set::settling::Settling;
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::region::touching::Region;
 use halfgap_collision::BodyId;
 
@@ -13,7 +13,7 @@ type ByRoot = Vec<(usize, usize)>;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Members {
     places: ByRoot,
-    held: ByRoot,
+    active: ByRoot,
     touches: ByRoot,
 }
 
@@ -32,13 +32,13 @@ impl Members {
         let root_of = |bodies: [BodyId; 2]| {
             bodies.into_iter().find_map(|body| region.place(body)).map(|place| places[place].0)
         };
-        self.held.clear();
-        let held = settling.held().iter().enumerate();
-        self.held.extend(held.filter_map(|(index, (_, row))| Some((root_of(row.bodies)?, index))));
+        self.active.clear();
+        let active = settling.active().iter().enumerate();
+        self.active.extend(active.filter_map(|(index, (_, row))| Some((root_of(row.bodies)?, index))));
         self.touches.clear();
         let touches = region.touches().iter().enumerate();
         self.touches.extend(touches.filter_map(|(index, touch)| Some((root_of(touch.bodies)?, index))));
-        for list in [&mut self.places, &mut self.held, &mut self.touches] {
+        for list in [&mut self.places, &mut self.active, &mut self.touches] {
             list.sort_unstable();
         }
     }
@@ -48,9 +48,9 @@ impl Members {
         of_root(&self.places, root)
     }
 
-    /// The held rows of a group.
-    pub(super) fn held(&self, settling: &Settling, root: usize) -> impl Iterator<Item = HeldRow> + Clone {
-        of_root(&self.held, root).map(|index| settling.held()[index].1)
+    /// The active rows of a group.
+    pub(super) fn active(&self, settling: &Settling, root: usize) -> impl Iterator<Item = ActiveRow> + Clone {
+        of_root(&self.active, root).map(|index| settling.active()[index].1)
     }
 
     /// Indices of the touches of a group's bodies.

@@ -1,10 +1,10 @@
 //! The steps of handling an event: gather, impact, active set, groups, predict.
 //!
-//! **Invariant**: after an event no held contact pulls, no touching pair closes faster than at rest, every movable body is
+//! **Invariant**: after an event no active contact pulls, no touching pair closes faster than at rest, every movable body is
 //! either in flight or in a group with a segment, and all predictions of the bodies involved are new. It keeps
 //! nothing but buffers, and sees all rooms but those that call it: which event it is, it is told (`due`).
 //!
-//! * velocities: `impacting`, `changing` (held rows change), `resolving`, `intervention` (by the caller), `lift` and `shift`
+//! * velocities: `impacting`, `changing` (active rows change), `resolving`, `intervention` (by the caller), `lift` and `shift`
 //!   (sunk bodies are put back);
 //! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `rules` (what the
 //!   search skips), `telling`;

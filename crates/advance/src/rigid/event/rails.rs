@@ -2,7 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::{HeldRow, RowSource, mechanism};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism};
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
@@ -67,7 +67,7 @@ pub(crate) fn renew_hints(assembly: &Assembly, connectors: &mut Connectors, grou
         let hint = hint.map(|hint| hint.with_before_stop(left));
         hint.map(|hint| if connectors.is_led(id) { hint.staying() } else { hint })
     };
-    let has_knots = |row: &HeldRow| match row.source {
+    let has_knots = |row: &ActiveRow| match row.source {
         RowSource::Connector(id, _) => {
             connectors.connector(id).path().is_some_and(|path| !path.knots().is_empty())
         }
@@ -79,7 +79,7 @@ pub(crate) fn renew_hints(assembly: &Assembly, connectors: &mut Connectors, grou
 }
 
 /// Notes the hints of rows for their rails, except for points that rest in a corner.
-pub(crate) fn note_hints(assembly: &Assembly, connectors: &mut Connectors, rows: &[HeldRow]) {
+pub(crate) fn note_hints(assembly: &Assembly, connectors: &mut Connectors, rows: &[ActiveRow]) {
     for row in rows {
         if let (RowSource::Connector(id, _), Some(hint)) = (row.source, row.hint)
             && !mechanism(assembly, connectors).is_in_corner(row)

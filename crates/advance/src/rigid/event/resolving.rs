@@ -5,7 +5,7 @@ use crate::rigid::error::AdvanceError;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::impact::corners::hold_back;
 use crate::rigid::impact::impacts::{Manner, conclude_impact, find_impulses, impact_error};
-use crate::rigid::impact::jams::{find_impulses_of_pressed, leave_out_jammed};
+use crate::rigid::impact::jams::{exclude_jammed, find_impulses_of_pressed};
 use crate::rigid::region::touching::Region;
 use crate::time::Time;
 use halfgap_contact::Impact;
@@ -22,7 +22,7 @@ pub(crate) fn resolve_impact(
 ) -> Result<(), AdvanceError> {
     let outcome = find_impulses(&rooms.view(), region, impact, manner);
     outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
-    if leave_out_jammed(&rooms.assembly, region, impact) {
+    if exclude_jammed(&rooms.assembly, region, impact) {
         let outcome = find_impulses_of_pressed(&rooms.view(), region, impact, manner);
         outcome.map_err(|source| impact_error(&rooms.assembly, region, time, source))?;
     }

@@ -1,5 +1,6 @@
 //! Rules of the search for features that touch: which it skips, and how far others may sink before they fire.
 
+use crate::rigid::active_set::exclusion::Exclusion;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::bounces::fires_open;
 use crate::rigid::contacts::pairs::Pairs;
@@ -29,7 +30,7 @@ fn opens_to(assembly: &Assembly, touch: Touch) -> f64 {
     pair_tolerances(a, b, &assembly.settings().tolerances).target_gap
 }
 
-/// Sets the rules for the touching features of a region: the search skips those that are held or that a group
+/// Sets the rules for the touching features of a region: the search skips those that are active or that a group
 /// watches, and lets others sink before they fire.
 pub(crate) fn set_rules(
     assembly: &Assembly,
@@ -43,12 +44,12 @@ pub(crate) fn set_rules(
     set_trigger_gaps(assembly, search, region);
     for (touch, gap) in region.touches().iter().zip(region.motions()) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-        let is_held = settling.holds_touch(*touch);
+        let is_held = settling.is_active(*touch);
         let mode = if is_held {
             Mode::Active
         } else if is_watched(assembly, groups, *touch) {
             Mode::Idle
-        } else if settling.lets_pass(*touch) {
+        } else if settling.is_excluded(*touch, Exclusion::Leverless) {
             Mode::Open(dead_point_gap(assembly, touch.bodies))
         } else {
             // A contact that fires although it does not close would do so again at once: it may sink, but no

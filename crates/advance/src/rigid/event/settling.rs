@@ -1,18 +1,18 @@
-//! The rows that are held after an event, once low hops are stilled.
+//! The rows that are active after an event, once low hops are stilled.
 
+use crate::rigid::active_set::hops::any_active_hops;
+use crate::rigid::active_set::settle::settle;
 use crate::rigid::contacts::pairs::is_likely;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::hops::still_hops;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
-use crate::rigid::held::hops::any_held_hops;
-use crate::rigid::held::settle::settle;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::shares::ROUNDS;
 use crate::rigid::zeno::repeats::has_pulled;
 
-/// Finds the held rows, and stills those that hop: stopping some contacts makes others hop.
+/// Finds the active rows, and stills those that hop: stopping some contacts makes others hop.
 pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     let EventWork { region, settling, .. } = &mut *work;
     settling.set_likely(region.records().iter().map(|record| is_likely(&rooms.pairs, record)));
@@ -21,7 +21,7 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
     let may_hop = is_on && work.region.cause() != Cause::Start && !work.region.is_hasty();
     settle_region(rooms, work, may_hop)?;
     for round in 1..=ROUNDS {
-        if !is_on || !any_held_hops(&rooms.assembly, &work.region, &work.settling) {
+        if !is_on || !any_active_hops(&rooms.assembly, &work.region, &work.settling) {
             break;
         }
         let is_stilled =

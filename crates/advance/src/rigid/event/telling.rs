@@ -1,16 +1,16 @@
 //! What callers are told of the contacts that an event lets begin.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::RowForce;
-use crate::rigid::contacts::rows::{HeldRow, RowSource};
-use crate::rigid::held::settling::Settling;
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::region::touching::Region;
 use halfgap_collision::Collision;
 
-/// Notes the unilateral rows that are held from now on.
+/// Notes the unilateral rows that are active from now on.
 pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Region, settling: &Settling) {
-    for (index, row) in settling.held().iter().filter(|(_, row)| !row.bilateral) {
+    for (index, row) in settling.active().iter().filter(|(_, row)| !row.bilateral) {
         let told = RowForce {
             bouncing: bouncing(assembly, books, region, settling),
             ..told_of(&region.records()[*index], row)
@@ -38,7 +38,7 @@ fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Sett
     (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
 }
 
-fn told_of(record: &Collision, row: &HeldRow) -> RowForce {
+fn told_of(record: &Collision, row: &ActiveRow) -> RowForce {
     let features = match row.source {
         RowSource::Contact(features) => Some(features),
         RowSource::Connector(..) => None,

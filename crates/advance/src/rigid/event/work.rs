@@ -1,8 +1,8 @@
 //! The buffers of an event.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::books::report::ImpactReport;
 use crate::rigid::event::shift::Lift;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use crate::rigid::zeno::repeats::CALM_REPEATS;
 use halfgap_collision::{BodyId, BodyState};

@@ -1,4 +1,4 @@
-//! The equations of motion of a group: force laws, damping, and the forces of held rows.
+//! The equations of motion of a group: force laws, damping, and the forces of active rows.
 //!
 //! With the rows J of the basis and their gap accelerations J v' + gamma, the forces f satisfy
 //! (J M^-1 J^T) f = -(J v'_0 + gamma), v'_0 being the acceleration without them; then v' = v'_0 + M^-1 J^T f.
@@ -9,7 +9,7 @@ use crate::rigid::group::physics::Physics;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::group::state::Group;
 use crate::time::Time;
-use halfgap_contact::HeldRows;
+use halfgap_contact::ActiveRows;
 use std::convert::Infallible;
 
 /// Response of the body on one side of a row to a unit force of the row.
@@ -49,7 +49,7 @@ impl Dynamics<'_> {
             self.stage.jacobians.push(moment.kinematics.jacobian);
             visit(moment.gap - row.gap, moment.kinematics.rate);
         }
-        self.group.held.factorize(&self.stage.jacobians)
+        self.group.active.factorize(&self.stage.jacobians)
     }
 
     /// Solves A x = -`offsets`, leaves x in `forces`, and M^-1 J^T x in `changes`.
@@ -62,27 +62,27 @@ impl Dynamics<'_> {
     }
 
     fn respond_by_rows(&mut self) {
-        self.respond_with(HeldRows::solve);
+        self.respond_with(ActiveRows::solve);
     }
 
     /// As [`respond`](Self::respond), but the forces of soft rows lack a small part. Not for trees.
     pub(crate) fn respond_roughly(&mut self) {
-        self.respond_with(HeldRows::solve_roughly);
+        self.respond_with(ActiveRows::solve_roughly);
     }
 
-    fn respond_with(&mut self, solve: fn(&mut HeldRows, &[f64], &mut [f64])) {
+    fn respond_with(&mut self, solve: fn(&mut ActiveRows, &[f64], &mut [f64])) {
         let Stage { offsets, forces, changes, solves, .. } = &mut *self.stage;
         forces.resize(offsets.len(), 0.0);
-        solve(&mut self.group.held, offsets, forces);
+        solve(&mut self.group.active, offsets, forces);
         changes.resize(self.group.bodies.len(), [0.0; 3]);
         changes.fill([0.0; 3]);
-        self.group.held.respond(forces, changes);
+        self.group.active.respond(forces, changes);
         *solves += 1;
     }
 
     /// True if a single row holds the group: two bodies, or one against the background.
-    fn is_held_by_one(&self) -> bool {
-        matches!(self.group.sides.as_slice(), [[a, b]] if a != b) && !self.group.held.is_soft()
+    fn has_a_single_row(&self) -> bool {
+        matches!(self.group.sides.as_slice(), [[a, b]] if a != b) && !self.group.active.is_soft()
     }
 
     /// Adds the response to the only row to the accelerations: many groups have just one, and need no factorisation.
@@ -132,10 +132,10 @@ impl Dynamics<'_> {
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             }
         }
-        if self.is_held_by_one() {
+        if self.has_a_single_row() {
             self.accelerate_by_row();
         } else {
-            self.group.held.factorize(&self.stage.jacobians);
+            self.group.active.factorize(&self.stage.jacobians);
             self.respond_by_rows();
             let Stage { accelerations, changes, .. } = &mut *self.stage;
             for (acceleration, change) in accelerations.iter_mut().zip(changes) {
@@ -155,14 +155,14 @@ impl Ode for Dynamics<'_> {
     type Error = Infallible;
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
-        if self.group.held.is_soft() || self.passes_by_rows() {
+        if self.group.active.is_soft() || self.passes_by_rows() {
             self.find_rates_on_rows(offset, state, rates);
         } else {
             self.find_rates(offset, state, rates, Self::solve_rows);
         }
-        let Group { held, loops, kept, dependent, .. } = &mut *self.group;
-        if kept.is_open() && (loops.any() || held.is_soft()) {
-            kept.note(offset, held.kept_beyond(*dependent));
+        let Group { active, loops, kept, dependent, .. } = &mut *self.group;
+        if kept.is_open() && (loops.any() || active.is_soft()) {
+            kept.note(offset, active.kept_beyond(*dependent));
         }
         Ok(())
     }
@@ -172,8 +172,8 @@ impl Dynamics<'_> {
     /// True if the stages of the group are moved onto its rows because it passes a bifurcation point of its loops.
     /// Errors that are only rounding are not corrected then: they would come into each stage anew.
     pub(crate) fn passes_by_rows(&self) -> bool {
-        let Group { tree, kept, held, .. } = &*self.group;
-        tree.is_bypassed() || (!tree.is_used() && !held.is_soft() && kept.is_near_singular())
+        let Group { tree, kept, active, .. } = &*self.group;
+        tree.is_bypassed() || (!tree.is_used() && !active.is_soft() && kept.is_near_singular())
     }
 
     /// Finds the rates of a state of the group; `constrain` adds the response to the rows to the accelerations in the
@@ -234,7 +234,7 @@ impl Dynamics<'_> {
         largest.sqrt()
     }
 
-    /// Largest error [m] of a held gap, with the bodies in place.
+    /// Largest error [m] of an active gap, with the bodies in place.
     pub(crate) fn largest_gap_error(&self) -> f64 {
         let mut twin = None;
         let gaps = self.group.rows.iter().map(|row| {

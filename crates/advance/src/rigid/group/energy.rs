@@ -17,7 +17,7 @@ pub(crate) struct Energy {
 }
 
 impl Dynamics<'_> {
-    /// Projects the end onto the held rows and notes the change of energy. Returns the energy at the end, if it was
+    /// Projects the end onto the active rows and notes the change of energy. Returns the energy at the end, if it was
     /// projected.
     pub(crate) fn end_on_rows(&mut self, tools: &Tools<'_>) -> Option<Energy> {
         let settings = tools.settings;

@@ -1,7 +1,7 @@
-//! A group's next segment: a step that keeps to the held rows, projected, with the event that ends it early.
+//! A group's next segment: a step that keeps to the active rows, projected, with the event that ends it early.
 //!
 //! The excess of a step is the largest of its errors beside the error estimate, each as a multiple of what is allowed:
-//! the distance of its dense output from the held rows, the oscillation of the dense output, the energy it has lost.
+//! the distance of its dense output from the active rows, the oscillation of the dense output, the energy it has lost.
 
 use crate::ode::StiffnessEstimate;
 use crate::rigid::group::attempt::StepFailure;
@@ -41,13 +41,13 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Makes the dense output of the last step, and notes the errors of the held gaps along it.
+    /// Makes the dense output of the last step, and notes the errors of the active gaps along it.
     pub(crate) fn complete(&mut self, tools: &mut Tools<'_>) {
         self.make_dense(tools.stepper);
         self.inner_excess(tools.settings.tolerances.accuracy, &tools.settings.steps);
     }
 
-    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the held rows and does not
+    /// Extends the group by a step that keeps its energy, and whose dense output keeps to the active rows and does not
     /// oscillate: shorter steps are tried until one does. Returns the stiffness, if it was estimated.
     pub(crate) fn extend_on_rows(
         &mut self,
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn the_energy_that_a_projection_takes_is_noted_once() {
         let mut rooms = pendulum();
-        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is in a group");
         let taken = with_group(
             &rooms.assembly,
             &rooms.connectors,
@@ -155,7 +155,7 @@ mod tests {
         // Largest distance [m] by which the disc may move for that error.
         let way: f64 = 1e-5;
         let mut rooms = disc_on_rods(&[DVec2::ZERO, DVec2::new(0.0, angle)]);
-        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is in a group");
         let moved = with_group(
             &rooms.assembly,
             &rooms.connectors,
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn a_shift_of_the_end_of_a_short_step_is_no_velocity() {
         let mut rooms = pendulum();
-        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is in a group");
         group.next_step = Some(1e-9);
         let velocity = with_group(
             &rooms.assembly,
@@ -204,7 +204,7 @@ mod tests {
         // Ten times the allowed error: the disc moves at 2 m/s and has a radius of 0.5 m.
         let spin = 10.0 * FINE.steps.local_error * 2.0 / 0.5;
         let mut rooms = turning_disc_on_rods(&[DVec2::ZERO], spin, rate);
-        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is in a group");
         group.next_step = Some(untold / rate);
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.extend(tools).expect("it decays");
@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn energy_that_a_step_loses_counts() {
         let mut rooms = pendulum();
-        let mut group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(0)).expect("it is in a group");
         let [kept, lost] = with_group(
             &rooms.assembly,
             &rooms.connectors,

@@ -1,4 +1,4 @@
-//! Errors of held rows between the ends of a step, where dense output is less exact.
+//! Errors of active rows between the ends of a step, where dense output is less exact.
 
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::group::dynamics::Dynamics;
@@ -6,7 +6,7 @@ use crate::rigid::settings::StepControl;
 use crate::rigid::shares::HALF_ZONE;
 
 impl Dynamics<'_> {
-    /// Largest error of held rows between the ends of the segment, where dense output is less exact, as a multiple of
+    /// Largest error of active rows between the ends of the segment, where dense output is less exact, as a multiple of
     /// the allowed one: for contacts such that nothing overlaps and none is missed, for connectors by the error that
     /// steps may make. Notes the largest error of a connector and the least gap of a contact.
     pub(crate) fn inner_excess(&mut self, accuracy: f64, steps: &StepControl) -> f64 {

@@ -1,7 +1,7 @@
 //! Steps up to the joints of rails that are splines. The third derivative of a spline jumps there, so that a step
 //! across loses the order of its method; one that ends there does not. Joints of lines and arcs are events (`watch`).
 
-use crate::rigid::contacts::rows::{HeldRow, RowSource};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::settings::StepControl;
@@ -27,7 +27,7 @@ impl Dynamics<'_> {
     }
 
     /// The longest step [s] for one row, where velocities may err by `allowed` [m/s]; `None` if no joint is ahead.
-    fn wait_for_joint(&self, row: &HeldRow, allowed: f64) -> Option<f64> {
+    fn wait_for_joint(&self, row: &ActiveRow, allowed: f64) -> Option<f64> {
         let (RowSource::Connector(id, _), Some(hint)) = (row.source, &row.hint) else { return None };
         let connector = &self.physics.mechanism.connectors[id.index()];
         let (path, anchor) = (connector.path()?, connector.anchors().0);
@@ -89,7 +89,7 @@ mod tests {
         let settings = RigidSettings { steps: StepControl { local_error, ..FINE.steps }, ..FINE };
         let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         let mut rooms = rooms_of(parts, settings, Time::ZERO);
-        let group = rooms.groups.take(BodyId(0)).expect("it is held");
+        let group = rooms.groups.take(BodyId(0)).expect("it is in a group");
         let end = DVec2::new(group.end_state[0], group.end_state[1]);
         position.angle_to(end) / spacing
     }

@@ -5,7 +5,7 @@
 //! cannot move. Contacts do not count: where rows of two contacts, or of a contact and a connector, become dependent,
 //! one contact is released.
 
-use crate::rigid::contacts::rows::{HeldRow, RowSource};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::forest::Forest;
 
 /// Whether the connectors of a group close a loop.
@@ -25,9 +25,9 @@ impl Loops {
 
     /// Finds whether connectors close a loop among a number of bodies, from the rows and the places of the two bodies
     /// of each; `None` for a body that cannot move.
-    pub(crate) fn find(&mut self, bodies: usize, rows: &[HeldRow], sides: &[[Option<u32>; 2]]) {
+    pub(crate) fn find(&mut self, bodies: usize, rows: &[ActiveRow], sides: &[[Option<u32>; 2]]) {
         self.is_closed = false;
-        let is_first = |row: &HeldRow| row.bilateral && matches!(row.source, RowSource::Connector(_, 0));
+        let is_first = |row: &ActiveRow| row.bilateral && matches!(row.source, RowSource::Connector(_, 0));
         let first_rows = rows.iter().zip(sides).filter(|(row, _)| is_first(row));
         self.joined.reset(bodies + 1);
         for (_, sides) in first_rows {
@@ -50,7 +50,7 @@ mod tests {
 
     /// True if connectors of two rows each, between the given places of three bodies, close a loop.
     fn any(ends: &[[Option<u32>; 2]]) -> bool {
-        let row = |connector: usize, index: usize| HeldRow {
+        let row = |connector: usize, index: usize| ActiveRow {
             source: RowSource::Connector(ConnectorId(connector as u32), index),
             bodies: [BodyId::WORLD; 2],
             bilateral: true,

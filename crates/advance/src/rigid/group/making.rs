@@ -3,7 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::{Connectors, Stop, is_rope};
-use crate::rigid::contacts::rows::{HeldRow, RowSource};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::brief::{BRIEFEST, CUT_SHARE};
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::state::{Group, Work};
@@ -12,12 +12,12 @@ use crate::rigid::shares::SEVERAL;
 use halfgap_collision::{BodyId, ConnectorId, GapState};
 
 impl Group {
-    /// Sets the bodies and the held rows of a new group. Bilateral rows come first: a contact that depends on them gives
+    /// Sets the bodies and the active rows of a new group. Bilateral rows come first: a contact that depends on them gives
     /// way.
     pub(crate) fn set_members(
         &mut self,
         bodies: impl Iterator<Item = BodyId>,
-        rows: impl Iterator<Item = HeldRow> + Clone,
+        rows: impl Iterator<Item = ActiveRow> + Clone,
     ) {
         self.bodies.extend(bodies);
         self.bodies.sort_unstable();
@@ -26,12 +26,12 @@ impl Group {
     }
 
     /// Adds a contact that touches without force, with the gap below which it fires.
-    pub(crate) fn add_idle(&mut self, row: HeldRow) {
+    pub(crate) fn add_idle(&mut self, row: ActiveRow) {
         self.idle.push(row);
     }
 
     /// Keeps the contacts without force of which a test is true.
-    pub(crate) fn retain_idle(&mut self, stays: impl FnMut(&HeldRow) -> bool) {
+    pub(crate) fn retain_idle(&mut self, stays: impl FnMut(&ActiveRow) -> bool) {
         self.idle.retain(stays);
     }
 
@@ -45,7 +45,7 @@ impl Group {
         self.is_unwatched = is_unwatched;
     }
 
-    /// Lists the stops, and the ropes that are watched like these, that are not held.
+    /// Lists the stops, and the ropes that are watched like these, that are not active.
     pub(crate) fn list_stops(&mut self, assembly: &Assembly, connectors: &Connectors) {
         for index in 0..self.bodies.len() {
             for &id in connectors.of(self.bodies[index]) {

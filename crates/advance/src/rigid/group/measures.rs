@@ -103,7 +103,7 @@ impl Dynamics<'_> {
     }
 
     /// A speed [m/s] of the group: that of its fastest point now, or that which applied forces would give it over its
-    /// length, if more. Forces that held rows cancel count too, so that a group at rest may err by more than rounding.
+    /// length, if more. Forces that active rows cancel count too, so that a group at rest may err by more than rounding.
     pub(crate) fn speed(&self, control: &StepControl) -> f64 {
         self.speed_in(&self.group.state, control)
     }

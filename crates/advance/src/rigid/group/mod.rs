@@ -1,6 +1,6 @@
-//! Groups: bodies that share their steps, from the equations of motion to the end of a step on the held rows.
+//! Groups: bodies that share their steps, from the equations of motion to the end of a step on the active rows.
 //!
-//! **Invariant**: between steps the state of a group lies on its held rows, and rates and forces are those of that state;
+//! **Invariant**: between steps the state of a group lies on its active rows, and rates and forces are those of that state;
 //! dense output keeps to the rows within what the watch allows. The room knows no event and no search.
 //!
 //! * data: `state` (a group), `reading`, `making` (its members), `turning` (from one segment to the next), `groups` (all of

@@ -1,4 +1,4 @@
-//! Stages of a step, moved onto held rows of which some depend on others, permanently or near a bifurcation point.
+//! Stages of a step, moved onto active rows of which some depend on others, permanently or near a bifurcation point.
 //!
 //! In a state on the rows dependent rows are consistent: one holds if the others do. A stage lies off the rows, by far
 //! more than the error of its step; there they are nearly dependent and contradict each other a little, which makes
@@ -10,7 +10,7 @@ use crate::rigid::group::projection::ALL_OF_IT;
 use crate::rigid::shares::ROUNDS;
 
 impl Dynamics<'_> {
-    /// Finds the rates of a state once it is moved onto the held rows.
+    /// Finds the rates of a state once it is moved onto the active rows.
     pub(crate) fn find_rates_on_rows(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         if !self.physics.projects {
             return self.find_rates(offset, state, rates, Self::solve_rows);
@@ -23,7 +23,7 @@ impl Dynamics<'_> {
         self.stage.on_rows = on_rows;
     }
 
-    /// Moves a state onto the held rows, and takes out the velocities that would move it off them.
+    /// Moves a state onto the active rows, and takes out the velocities that would move it off them.
     fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
         let length = self.physics.steps.length;
         let is_passing = self.passes_by_rows();

@@ -18,7 +18,7 @@ pub(crate) struct Physics<'a> {
     pub(crate) extra: Option<ExtraAcceleration>,
     pub(crate) steps: &'a StepControl,
     pub(crate) remedies: &'a Remedies,
-    /// States may be moved onto the held rows.
+    /// States may be moved onto the active rows.
     pub(crate) projects: bool,
 }
 

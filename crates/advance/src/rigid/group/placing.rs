@@ -1,7 +1,7 @@
 //! Places of a group's bodies along its segment: of all of them with their velocities, or only the poses of those whose
 //! gaps are watched.
 
-use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::Group;
 use glam::DVec2;
@@ -32,7 +32,7 @@ impl Dynamics<'_> {
         let Group { bodies, sides, idle, .. } = &*self.group;
         let of_rows = (0..sides.len()).filter(|&row| watches(row)).flat_map(|row| sides[row]).flatten();
         let place_of = |body| bodies.binary_search(body).ok().and_then(|place| u32::try_from(place).ok());
-        let of_idle = idle.iter().flat_map(|HeldRow { bodies, .. }| bodies).filter_map(place_of);
+        let of_idle = idle.iter().flat_map(|ActiveRow { bodies, .. }| bodies).filter_map(place_of);
         let watched = &mut self.stage.watched;
         watched.clear();
         watched.extend(of_rows.chain(of_idle));
@@ -90,7 +90,7 @@ mod tests {
     /// Motions of all bodies in the middle of a segment along which one body slides and turns: placed by `place_at`,
     /// and with only the poses put.
     fn placed_and_put(mut rooms: Rooms, body: BodyId) -> [Vec<Moving>; 2] {
-        let mut group = rooms.groups.take(body).expect("it is held");
+        let mut group = rooms.groups.take(body).expect("it is in a group");
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             let at = dynamics.group.velocities();
             (dynamics.group.state[at], dynamics.group.state[at + 2]) = (0.7, 0.3);

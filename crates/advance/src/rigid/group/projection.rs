@@ -1,4 +1,4 @@
-//! Projection of the end of a step onto the held rows, with all care; stages of steps are moved in `on_rows`.
+//! Projection of the end of a step onto the active rows, with all care; stages of steps are moved in `on_rows`.
 //!
 //! Rows that are redundant all along, or nearly dependent near a bifurcation point, may be soft: they share their
 //! force, and projections converge more slowly.
@@ -31,16 +31,16 @@ impl Dynamics<'_> {
         self.stage.load(&self.group.bodies, &end);
         self.group.end_state = end;
         let dependent = self.factorize(|_, _| ());
-        let Group { rows, held, .. } = &mut *self.group;
+        let Group { rows, active, .. } = &mut *self.group;
         let mut connectors = (0..rows.len()).filter(|&row| rows[row].bilateral);
-        let has_dependent = dependent > 0 && connectors.any(|row| held.is_dependent(row));
+        let has_dependent = dependent > 0 && connectors.any(|row| active.is_dependent(row));
         if has_dependent && self.physics.remedies.act(Remedy::SoftRows) {
-            held.soften(|row| rows[row].bilateral);
+            active.soften(|row| rows[row].bilateral);
             self.group.dependent = dependent;
         }
     }
 
-    /// Moves the end state onto the held rows, each to the gap at which it is held, by the least displacement and the
+    /// Moves the end state onto the active rows, each to the gap at which it is held, by the least displacement and the
     /// least change of velocities in the metric of the masses.
     pub(crate) fn project_end(&mut self, control: &StepControl) {
         let length = control.length;
@@ -51,7 +51,7 @@ impl Dynamics<'_> {
         let mut rates = std::mem::take(&mut self.stage.rates);
         // At a bifurcation point the errors of a loop would decide its branch unless they are hardly any.
         let is_singular = self.group.kept.may_near_singular();
-        let is_soft = self.group.held.is_soft() || is_singular;
+        let is_soft = self.group.active.is_soft() || is_singular;
         // Small errors of several loops are corrected as long as that does not change the motion.
         let noise = self.passes_by_rows().then(|| self.noise(&end, length));
         let rounds = if is_soft { SOFT_PROJECTIONS } else { ROUNDS };

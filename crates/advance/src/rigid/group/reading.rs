@@ -2,7 +2,7 @@
 
 use crate::ode::SegmentPolynomial;
 use crate::rigid::connectors::store::Stop;
-use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::state::{Group, SegmentEnd, Work};
 use crate::rigid::group::stiffness::Stiffness;
 use crate::time::Time;
@@ -41,7 +41,7 @@ impl Group {
 
     /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
     #[inline]
-    pub(crate) fn idle(&self) -> &[HeldRow] {
+    pub(crate) fn idle(&self) -> &[ActiveRow] {
         &self.idle
     }
 
@@ -70,7 +70,7 @@ impl Group {
         &self.laws
     }
 
-    /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
+    /// The least gap [m] of an active contact within the segment, if there is one and its gap was evaluated there.
     #[inline]
     pub(crate) fn least_gap(&self) -> Option<f64> {
         self.least_gap
@@ -113,9 +113,9 @@ impl Group {
         &self.rates
     }
 
-    /// The held rows: independent ones of the contacts, and every row of the connectors.
+    /// The active rows: independent ones of the contacts, and every row of the connectors.
     #[inline]
-    pub(crate) fn rows(&self) -> &[HeldRow] {
+    pub(crate) fn rows(&self) -> &[ActiveRow] {
         &self.rows
     }
 

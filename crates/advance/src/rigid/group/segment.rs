@@ -1,5 +1,5 @@
 //! A group's segment: its start, the repetition of its step up to an event, its dense output. The step itself is made
-//! in `attempt`, its end moved onto the held rows in `projection`.
+//! in `attempt`, its end moved onto the active rows in `projection`.
 
 use crate::ode::{Ode, Point, SegmentPolynomial, Stepper};
 use crate::rigid::contacts::rows::RowSource;

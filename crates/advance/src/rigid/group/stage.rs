@@ -2,7 +2,7 @@
 
 use crate::rigid::bodies::law::{Wrench, Wrenches};
 use crate::rigid::bodies::trajectory::Trajectory;
-use crate::rigid::contacts::rows::{HeldRow, RowMoment};
+use crate::rigid::contacts::rows::{ActiveRow, RowMoment};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::samples::{NODES, Samples};
 use crate::rigid::group::state::{Group, Work};
@@ -41,7 +41,7 @@ pub(crate) struct Stage {
     pub(super) force_ranges: Vec<[f64; 2]>,
     /// Evaluations note `force_ranges`.
     pub(super) asks_force_ranges: bool,
-    /// Largest error [m] of a held gap where forces of rows were last found.
+    /// Largest error [m] of an active gap where forces of rows were last found.
     pub(super) gap_error: f64,
     /// Largest acceleration [m/s^2] of a point of the group's bodies without the forces of rows, as last noted.
     pub(super) free_acceleration: f64,
@@ -57,7 +57,7 @@ pub(crate) struct Stage {
     pub(super) trial: Vec<f64>,
     /// Rates of `trial`.
     pub(super) trial_rates: Vec<f64>,
-    /// A state moved onto the held rows.
+    /// A state moved onto the active rows.
     pub(super) on_rows: Vec<f64>,
     /// Bounds on the motion of the group's bodies along the segment.
     pub(super) bounds: Vec<MotionBounds>,
@@ -69,7 +69,7 @@ pub(crate) struct Stage {
     pub(super) there: Vec<f64>,
     /// Number of evaluations so far.
     pub(super) evaluations: u64,
-    /// Number of solves of held rows so far.
+    /// Number of solves of active rows so far.
     pub(super) solves: u64,
 }
 
@@ -104,7 +104,7 @@ impl Stage {
         &self.forces
     }
 
-    /// Largest error [m] of a held gap where forces of rows were last found.
+    /// Largest error [m] of an active gap where forces of rows were last found.
     #[inline]
     pub(crate) fn gap_error(&self) -> f64 {
         self.gap_error
@@ -122,7 +122,7 @@ impl Stage {
         &self.movings
     }
 
-    /// Number of solves of held rows so far.
+    /// Number of solves of active rows so far.
     #[inline]
     pub(crate) fn solves(&self) -> u64 {
         self.solves
@@ -250,7 +250,7 @@ impl Stage {
     #[inline(always)]
     pub(crate) fn take_row(
         &mut self,
-        row: &HeldRow,
+        row: &ActiveRow,
         sides: [Option<u32>; 2],
         moment: &RowMoment,
         extra: Option<&ExtraAcceleration>,

@@ -2,14 +2,14 @@
 
 use crate::ode::{Accepted, SegmentPolynomial};
 use crate::rigid::connectors::store::Stop;
-use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::loops::Loops;
 use crate::rigid::group::singular::Kept;
 use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::group::tree::JointTree;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId};
-use halfgap_contact::HeldRows;
+use halfgap_contact::ActiveRows;
 
 /// Work of forces without a potential, which is integrated with the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,17 +43,17 @@ pub(crate) enum SegmentEnd {
 pub(crate) struct Group {
     /// Its bodies, ascending.
     pub(super) bodies: Vec<BodyId>,
-    /// The held rows: independent ones of the contacts, and every row of the connectors.
-    pub(super) rows: Vec<HeldRow>,
+    /// The active rows: independent ones of the contacts, and every row of the connectors.
+    pub(super) rows: Vec<ActiveRow>,
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
     pub(super) sides: Vec<[Option<u32>; 2]>,
     /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
-    pub(super) idle: Vec<HeldRow>,
+    pub(super) idle: Vec<ActiveRow>,
     pub(super) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
     pub(super) laws: Vec<usize>,
     pub(super) works: Vec<Work>,
-    pub(super) held: HeldRows,
+    pub(super) active: ActiveRows,
     /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
     pub(super) tree: JointTree,
     /// Whether its connectors close a loop.
@@ -123,7 +123,7 @@ pub(crate) struct Group {
     pub(super) projected: f64,
     /// Largest error [m] of a connector, in the middle of the segment, or at its end if the middle was not evaluated.
     pub(super) largest_error: f64,
-    /// The least gap [m] of a held contact within the segment, if there is one and its gap was evaluated there.
+    /// The least gap [m] of an active contact within the segment, if there is one and its gap was evaluated there.
     pub(super) least_gap: Option<f64>,
     /// The event that ends the segment early, if there is one, and its offset [s].
     pub(super) event: Option<(f64, SegmentEnd)>,
@@ -133,7 +133,7 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// Penetration [m] of the deepest held contact; 0 if there is none. Rows that contradict each other do not keep to
+    /// Penetration [m] of the deepest active contact; 0 if there is none. Rows that contradict each other do not keep to
     /// their gaps.
     pub(crate) fn depth(&self) -> f64 {
         self.least_gap.map_or(0.0, |gap| (-gap).max(0.0))
@@ -153,7 +153,7 @@ impl Group {
             stops: emptied(old.stops),
             laws: emptied(old.laws),
             works: emptied(old.works),
-            held: old.held,
+            active: old.active,
             tree: old.tree,
             loops: old.loops,
             kept: old.kept,
@@ -232,7 +232,7 @@ impl Group {
         [&mut self.forces, &mut self.end_forces]
     }
 
-    pub(crate) fn idle_mut(&mut self) -> &mut Vec<HeldRow> {
+    pub(crate) fn idle_mut(&mut self) -> &mut Vec<ActiveRow> {
         &mut self.idle
     }
 
@@ -241,7 +241,7 @@ impl Group {
     }
 
     pub(crate) fn forget_structure(&mut self) {
-        self.held.set_structure(&[], &self.sides);
+        self.active.set_structure(&[], &self.sides);
     }
 
     pub(crate) fn set_laws(&mut self, laws: Vec<usize>) {
@@ -274,11 +274,11 @@ mod tests {
         let rooms = resting_discs(&[0.0]);
         let mut used = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it rests").clone();
         assert!(used.free_acceleration > 0.0 && used.span > 0.0);
-        let held = used.held.clone();
+        let active = used.active.clone();
         used.clear();
         let mut fresh = Group::default();
         // The order of the rows is found anew for each group.
-        (fresh.held, fresh.tree, fresh.kept) = (held, used.tree.clone(), used.kept.clone());
+        (fresh.active, fresh.tree, fresh.kept) = (active, used.tree.clone(), used.kept.clone());
         fresh.loops = used.loops.clone();
         assert_eq!(format!("{used:?}"), format!("{fresh:?}"));
     }

@@ -1,7 +1,7 @@
 //! A group goes from one segment to the next.
 
 use crate::ode::Method;
-use crate::rigid::contacts::rows::{HeldRow, RowSource};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::stage::set_body_state;
 use crate::rigid::group::state::{Group, SegmentEnd};
 use crate::time::Time;
@@ -13,7 +13,7 @@ impl Group {
     pub(crate) fn prepare(&mut self, now: Time, is_patient: bool, inertias: &[InverseInertia]) {
         (self.start, self.made, self.is_patient) = (now, now, is_patient);
         self.find_sides();
-        self.held.set_structure(inertias, &self.sides);
+        self.active.set_structure(inertias, &self.sides);
         // The projection acts on the end of a segment: a segment of no length ends here.
         let dimension = self.dimension();
         self.end_state.clear();
@@ -112,7 +112,7 @@ impl Group {
     /// stop's is handled by `of_stop`.
     pub(crate) fn renew_hints(
         &mut self,
-        is_wanted: impl Fn(&HeldRow) -> bool,
+        is_wanted: impl Fn(&ActiveRow) -> bool,
         found: impl Fn(&[BodyId], &[f64], ConnectorId, Option<&RailHint>) -> Option<RailHint>,
         of_stop: impl Fn(ConnectorId, Option<RailHint>) -> Option<RailHint>,
     ) {

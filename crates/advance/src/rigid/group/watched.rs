@@ -1,7 +1,7 @@
 //! Longest steps of bodies in contact. Along a step the forces of contacts, which no error estimate shows where nothing
 //! accelerates, and the gaps of contacts without force must be sampled well.
 
-use crate::rigid::contacts::rows::{HeldRow, RowSource, moving_of};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource, moving_of};
 use crate::rigid::group::attempt::STEADY_GROWTH;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::body_state;
@@ -45,7 +45,7 @@ impl Dynamics<'_> {
         waits.fold(f64::INFINITY, f64::min)
     }
 
-    /// The step [s] along which no held contact changes by more than the fraction: its normal and its bodies turn, and
+    /// The step [s] along which no active contact changes by more than the fraction: its normal and its bodies turn, and
     /// it runs along the side of a moving body. A body that moves straight along a floor does none of that, however
     /// far, nor do bodies that move together. For contacts without force this is no bound: their gaps vary, too.
     fn longest_step_by_rows(&self) -> f64 {
@@ -54,7 +54,7 @@ impl Dynamics<'_> {
     }
 
     /// The longest step [s] for one row; infinite for a row of a connector.
-    fn wait_for_row(&self, row: &HeldRow) -> f64 {
+    fn wait_for_row(&self, row: &ActiveRow) -> f64 {
         let RowSource::Contact(features) = row.source else { return f64::INFINITY };
         let group = &*self.group;
         let places = row.bodies.map(|body| group.bodies.binary_search(&body).ok());

@@ -44,10 +44,10 @@ pub(crate) fn find_impulses(
     }
 }
 
-/// True if the contact or unilateral connector of a record was held until now.
-fn was_held(connectors: &Connectors, pairs: &Pairs, record: &Collision) -> bool {
+/// True if the contact or unilateral connector of a record was active until now.
+fn was_active(connectors: &Connectors, pairs: &Pairs, record: &Collision) -> bool {
     match record.parties.detector {
-        Detector::Connector { id, .. } => connectors.is_held_unilaterally(id),
+        Detector::Connector { id, .. } => connectors.is_active_unilaterally(id),
         _ => is_likely(pairs, record).is_some(),
     }
 }
@@ -66,7 +66,7 @@ pub(crate) fn set_rows(
     let rows = region.records().iter().map(|record| {
         let row = row_of(assembly, record);
         let elasticity = if dull && record.gap_state().rebounds() { 0.0 } else { row.elasticity };
-        CollisionRow { elasticity, held: was_held(connectors, pairs, record), ..row }
+        CollisionRow { elasticity, was_active: was_active(connectors, pairs, record), ..row }
     });
     impact.set_rows(rows);
 }

@@ -1,6 +1,6 @@
 //! Impacts that jam: large impulses cancel each other, between contacts that need not take part.
 //!
-//! A contact held since the start or its capture is held at the gap at which it formed. A body that fits between two
+//! A contact active since the start or its capture is held at the gap at which it formed. A body that fits between two
 //! others with little room may so be held on both sides, farther from both than the gap at which bodies fire. As it
 //! passes their corners, two such contacts come to lie opposite each other: they act like a vice, and the least angle
 //! between them stops the body for good.
@@ -14,25 +14,25 @@ use crate::rigid::shares::{MAJOR, NEGLIGIBLE};
 use halfgap_collision::Collision;
 use halfgap_contact::{Impact, ImpactError};
 
-/// Leaves out of a region the contacts farther apart than the gap at which bodies fire, if the impulses of contacts
+/// Excludes from a region the contacts farther apart than the gap at which bodies fire, if the impulses of contacts
 /// jam; true if there are any.
-pub(crate) fn leave_out_jammed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> bool {
+pub(crate) fn exclude_jammed(assembly: &Assembly, region: &mut Region, impact: &Impact) -> bool {
     // The contact that fired takes part, though cutting the steps may have moved it.
-    let may_be_left_out =
+    let may_be_excluded =
         |record: &Collision| !record.must_handle && !record.gap_state().is_at_target(assembly.sink());
-    if !region.records().iter().any(may_be_left_out) || !jams(assembly, region, impact) {
+    if !region.records().iter().any(may_be_excluded) || !jams(assembly, region, impact) {
         return false;
     }
     if !assembly.remedies().act(Remedy::JammedImpulses) {
         return false;
     }
-    region.leave_out(may_be_left_out);
+    region.exclude(may_be_excluded);
     true
 }
 
-/// Finds the impulses of a region without the records left out, except those that are pressed all the same: of a
-/// body that fits with little room only one side is. Where those jam, too, or cannot be solved, nothing is left
-/// out.
+/// Finds the impulses of a region without the excluded records, except those that are pressed all the same: of a
+/// body that fits with little room only one side is. Where those jam, too, or cannot be solved, nothing is
+/// excluded.
 pub(crate) fn find_impulses_of_pressed(
     view: &View<'_>,
     region: &mut Region,
@@ -67,10 +67,10 @@ fn momentum_changed(assembly: &Assembly, region: &mut Region, impact: &Impact) -
     changed.map(|(&body, change)| assembly.trajectory(body).load(change)).fold(0.0, f64::max)
 }
 
-/// Lets in again the records left out that are pressed by the impulses found without them; true if there are any.
+/// Admits again the excluded records that are pressed by the impulses found without them; true if there are any.
 fn admit_pressed(region: &mut Region, impact: &Impact) -> bool {
     region.sum_changes(impact);
-    let records = region.records().iter().chain(region.left_out());
+    let records = region.records().iter().chain(region.excluded());
     let rates = records.map(|record| -record.motion.normal_velocity);
     let least = NEGLIGIBLE * rates.fold(0.0, f64::max);
     region.admit(|record, change| change.max(record.motion.normal_velocity + change) < -least)

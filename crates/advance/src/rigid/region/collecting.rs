@@ -2,7 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::is_rope;
-use crate::rigid::contacts::pairs::{Link, is_held_contact};
+use crate::rigid::contacts::pairs::{Link, is_active_contact};
 use crate::rigid::contacts::touch::{Touch, sorted, touch_of};
 use crate::rigid::group::groups::{Groups, group_of};
 use crate::rigid::region::cause::Cause;
@@ -33,13 +33,13 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
         let moving = [a, b].map(|body| view.assembly.moving_at(body, time));
         for row in 0..view.connectors.row_count(id) {
             let mut record = view.connectors.connector_record(view.assembly, id, row, &moving, time);
-            let is_held = connector.is_bilateral() || view.connectors.is_held_unilaterally(id);
-            // A rope that is held is taut, however far dense output has its ends from its length.
+            let is_held = connector.is_bilateral() || view.connectors.is_active_unilaterally(id);
+            // A rope that is active is taut, however far dense output has its ends from its length.
             record.must_handle |= is_held;
             if !record.must_handle && !record.gap_state().is_touching() {
                 continue;
             }
-            // A row at rest is held, or may be; a held rope is at no dead point, though dense output may have it
+            // A row at rest is active, or may become so; an active rope is at no dead point, though dense output may have it
             // closing.
             let collides = !is_held && record.gap_state().is_colliding(view.assembly.rest_speed());
             if is_rope(connector) && collides && rope_is_near_dead_point(view.assembly, view.connectors, id) {
@@ -167,7 +167,7 @@ fn collect_pair(view: &View<'_>, region: &mut Region, [first, second]: &[Moment<
 }
 
 /// True if a record takes part in an event: a contact at its target or nearer, one that closes within the target
-/// zone, one that is held already, or touches at the start, or takes over from a contact that has run off its
+/// zone, one that is active already, or touches at the start, or takes over from a contact that has run off its
 /// features; and one that carries a force, though dense output may have it closing or opening faster than a contact
 /// at rest. Other contacts have room, and fire in their own time if they close.
 fn counts_as_touching(
@@ -187,7 +187,7 @@ fn counts_as_touching(
         && view.assembly.remedies().act(Remedy::PassingBy);
     gap.is_at_target(view.assembly.sink())
         || (!passes && (at_start || record.is_close_enough(view.assembly.sink(), rest)))
-        || (gap.rests(rest) && (takes_over || is_held_contact(view.pairs, record, bodies)))
+        || (gap.rests(rest) && (takes_over || is_active_contact(view.pairs, record, bodies)))
         || is_carried(view.assembly, view.groups, record)
 }
 

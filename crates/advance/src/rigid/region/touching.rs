@@ -32,8 +32,8 @@ pub(crate) struct Region {
     pub(super) changes: Vec<[f64; 3]>,
     /// Whether an impulse acts on each body.
     pub(super) struck: Vec<bool>,
-    /// Records that were left out because they jam.
-    pub(super) left_out: Vec<Collision>,
+    /// Records that are excluded because they jam.
+    pub(super) excluded: Vec<Collision>,
     /// Stamp and place in `bodies` of each body, valid where the stamp is the present one.
     pub(super) places: Vec<(u32, u32)>,
     pub(super) stamp: u32,
@@ -64,26 +64,26 @@ impl Region {
         self.is_hasty = is_hasty;
     }
 
-    /// Lets all records in that are left out.
+    /// Admits all excluded records again.
     pub(crate) fn admit_all(&mut self) {
-        self.records.append(&mut self.left_out);
+        self.records.append(&mut self.excluded);
     }
 
-    /// Leaves out the records of which a test is true; those that were left out before are forgotten.
-    pub(crate) fn leave_out(&mut self, is_out: impl Fn(&Collision) -> bool) {
-        self.left_out.clear();
-        self.left_out.extend(self.records.extract_if(.., |record| is_out(record)));
+    /// Excludes the records of which a test is true; those that were excluded before are forgotten.
+    pub(crate) fn exclude(&mut self, is_out: impl Fn(&Collision) -> bool) {
+        self.excluded.clear();
+        self.excluded.extend(self.records.extract_if(.., |record| is_out(record)));
     }
 
-    /// Lets in again the records left out of which a test is true, given the change of their rate [m/s] by the changes
+    /// Admits again the excluded records of which a test is true, given the change of their rate [m/s] by the changes
     /// of the bodies' velocities; true if there are any.
     pub(crate) fn admit(&mut self, is_in: impl Fn(&Collision, f64) -> bool) -> bool {
-        let (mut records, mut left_out) =
-            (std::mem::take(&mut self.records), std::mem::take(&mut self.left_out));
+        let (mut records, mut excluded) =
+            (std::mem::take(&mut self.records), std::mem::take(&mut self.excluded));
         let before = records.len();
-        records.extend(left_out.extract_if(.., |record| is_in(record, self.change_of(record))));
+        records.extend(excluded.extract_if(.., |record| is_in(record, self.change_of(record))));
         let any = records.len() > before;
-        (self.records, self.left_out) = (records, left_out);
+        (self.records, self.excluded) = (records, excluded);
         any
     }
 
@@ -98,10 +98,10 @@ impl Region {
         sides.into_iter().enumerate().map(of_side).sum()
     }
 
-    /// Records that were left out because they jam.
+    /// Records that are excluded because they jam.
     #[inline]
-    pub(crate) fn left_out(&self) -> &[Collision] {
-        &self.left_out
+    pub(crate) fn excluded(&self) -> &[Collision] {
+        &self.excluded
     }
 
     /// Notes whether the event is one too many in a short time.

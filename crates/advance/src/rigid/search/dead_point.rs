@@ -96,7 +96,7 @@ fn corners_of(assembly: &Assembly, Touch { bodies, features }: Touch) -> Option<
 }
 
 /// Gap [m] to which grazing features may seem to come: between the ends of a step dense output has bodies off their
-/// held rows, which is no real depth.
+/// active rows, which is no real depth.
 fn least_dead_point_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
     let errors =
         bodies.iter().filter_map(|&body| assembly.shared_by(body)).map(|shared| shared.largest_error);

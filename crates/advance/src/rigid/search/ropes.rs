@@ -52,7 +52,7 @@ impl Searching<'_> {
         let source = Source::Connector(id);
         let clear = self.connectors.states()[id.index()].clear();
         self.connectors.set_taut(id, clear, None);
-        if self.connectors.states()[id.index()].held() || self.connectors.is_rope_watched(id) {
+        if self.connectors.states()[id.index()].active() || self.connectors.is_rope_watched(id) {
             self.agenda.clear(source);
             return;
         }

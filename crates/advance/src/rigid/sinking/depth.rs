@@ -124,11 +124,11 @@ pub(crate) fn sinks_to(assembly: &Assembly, touch: Touch, gap: f64) -> f64 {
 }
 
 /// Depth [m] to which two bodies, the lesser first, may lie in one another. Where contacts carry impulses only,
-/// they have been left to sink, have been moved, or would sink within a step; where contacts carry forces, held
+/// they have been left to sink, have been moved, or would sink within a step; where contacts carry forces, active
 /// ones may lie deep.
 pub(crate) fn may_have_sunk_by(assembly: &Assembly, sinking: &Sinking, bodies: [BodyId; 2]) -> f64 {
     if assembly.settings().impulse_step.is_none() {
-        return assembly.held_depth(bodies);
+        return assembly.active_depth(bodies);
     }
     // Either may have been moved against the other.
     let moved = 2.0 * sinking.moved;

@@ -340,7 +340,7 @@ mod tests {
             // A disc that falls, its contact with the floor touched without force.
             let mut rooms = resting_discs(&[0.0]);
             let sink = rooms.assembly.settings().tolerances.sink();
-            let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+            let mut group = rooms.groups.take(BodyId(1)).expect("it is in a group");
             group.make_idle();
             group.idle_mut()[0].gap += below - sink;
             group.state_mut()[1] -= sink;

@@ -1,5 +1,5 @@
 //! Events that are overdue when a segment starts: by rounding, the force of a contact is a little below zero already,
-//! or the contact is a little beyond its features, and it is held all the same. `watch` waits for falls from above
+//! or the contact is a little beyond its features, and it stays active all the same. `watch` waits for falls from above
 //! zero, which such a contact does not make any more: it would pull from then on, or run along an edge that does not
 //! exist.
 
@@ -74,7 +74,7 @@ mod tests {
 
     /// Changes the group of body 1, steps it anew, and finds the end of the step.
     fn stepped(mut rooms: Rooms, change: impl FnOnce(&mut Group)) -> Box<Group> {
-        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is in a group");
         change(&mut group);
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {
             dynamics.set_out();
@@ -127,7 +127,7 @@ mod tests {
         let beyond: f64 = 1e-4;
         let mut rooms = block_on_its_corner();
         rooms.assembly.settings_mut().steps.largest_step = Some(0.3 * beyond);
-        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is in a group");
         let angle = group.state()[2] + 0.2 + beyond;
         turn_on_its_corner(&mut group, angle, 1.0);
         group.end_at_start();
@@ -135,7 +135,7 @@ mod tests {
         let mut turned = 0.0;
         for _ in 0..10 {
             continue_group(&mut rooms, BodyId(1)).expect("it topples");
-            let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is held");
+            let group = group_of(&rooms.assembly, &rooms.groups, BodyId(1)).expect("it is in a group");
             if let Some((offset, SegmentEnd::Change(0))) = group.event() {
                 turned += offset;
                 assert!(turned > 0.5 * beyond && turned < 3.0 * beyond, "{turned} rad");
@@ -143,6 +143,6 @@ mod tests {
             }
             turned += group.span();
         }
-        panic!("it is held after {turned} rad");
+        panic!("it is active after {turned} rad");
     }
 }

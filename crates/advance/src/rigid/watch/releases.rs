@@ -4,7 +4,7 @@
 //! which none can happen. The segment is searched up to its end or to the event found otherwise, in one part, or in as
 //! many as the forces ask for.
 
-use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
 use crate::rigid::group::state::SegmentEnd;
@@ -15,7 +15,7 @@ use crate::rigid::watch::earliest::Earliest;
 use crate::rigid::watch::early_ends::{Watch, fill, find_first};
 use crate::rigid::watch::overdue::find_overdue;
 
-/// Pull of a contact that may be rounding as it is held, as a multiple of the force that counts as none.
+/// Pull of a contact that may be rounding as it becomes active, as a multiple of the force that counts as none.
 const PULL: f64 = 16.0;
 
 /// Fractions of a part of the segment at which forces are compared with the quartics through their samples: near the
@@ -96,7 +96,7 @@ fn pull_at_start(dynamics: &Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
         return None;
     }
     let pulls =
-        |((row, force), least): ((&HeldRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
+        |((row, force), least): ((&ActiveRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
     let row = dynamics
         .group
         .rows()
@@ -117,7 +117,7 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
     let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
     let is_known =
         dynamics.group.stepping() != Stepping::Stiff && dynamics.stage.force_ranges().len() == rows.len();
-    let part = |(index, _): (usize, &HeldRow)| {
+    let part = |(index, _): (usize, &ActiveRow)| {
         let (start, end) = (forces[index], end_forces[index]);
         let [least, largest] = if is_known { dynamics.stage.force_ranges()[index] } else { [start, end] };
         let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
@@ -185,7 +185,7 @@ mod tests {
     /// Fraction of the step up to which a contact is firm, if its force [N] goes from `start` to `end`.
     fn firm_from_to(start: f64, end: f64) -> Option<f64> {
         let mut rooms = resting_discs(&[0.0]);
-        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is in a group");
         let [forces, end_forces] = group.forces_mut();
         (forces[0], end_forces[0]) = (start, end);
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, _| {
@@ -210,7 +210,7 @@ mod tests {
     fn a_contact_that_may_lose_its_force_is_looked_at_when_its_time_comes() {
         let leader = BodyId(1);
         let mut rooms = resting_discs(&[0.0]);
-        let mut group = rooms.groups.take(leader).expect("it is held");
+        let mut group = rooms.groups.take(leader).expect("it is in a group");
         // As if the disc's force fell from 20 N, twice its weight, to -20 N at the end.
         let [forces, end_forces] = group.forces_mut();
         (forces[0], end_forces[0]) = (20.0, -20.0);

@@ -65,17 +65,17 @@ pub(crate) fn find_bounds(dynamics: &mut Dynamics<'_>) {
     dynamics.stage.set_bounds(dynamics.group.paths().iter().map(bounds_along));
 }
 
-/// True if a held contact surely stays on its features along the segment. The bodies must be placed in its middle,
+/// True if an active contact surely stays on its features along the segment. The bodies must be placed in its middle,
 /// and their bounds known.
 pub(crate) fn stays(dynamics: &Dynamics<'_>, row: usize) -> bool {
-    let held = &dynamics.group.rows()[row];
-    let RowSource::Contact(features) = held.source else { return false };
+    let active = &dynamics.group.rows()[row];
+    let RowSource::Contact(features) = active.source else { return false };
     let mechanism = &dynamics.physics.mechanism;
-    let movings = held.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
-    let sample = mechanism.sample(held.bodies, features, movings);
+    let movings = active.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
+    let sample = mechanism.sample(active.bodies, features, movings);
     let arms = Arms::of(&sample, movings[0], movings[1]);
     let side = |index: usize, arm: DVec2| Side {
-        feature: mechanism.feature(held.bodies[index], features[index]),
+        feature: mechanism.feature(active.bodies[index], features[index]),
         moving: movings[index],
         arm,
         bounds: dynamics.group.sides()[row][index]
@@ -152,7 +152,7 @@ mod tests {
     /// Runs the contact of body 1 along a segment from a changed start. Returns whether it is said to stay on its
     /// features, and whether it does.
     fn said_and_done(mut rooms: Rooms, set_out: impl FnOnce(&mut Group)) -> [bool; 2] {
-        let mut group = rooms.groups.take(BodyId(1)).expect("it is held");
+        let mut group = rooms.groups.take(BodyId(1)).expect("it is in a group");
         set_out(&mut group);
         group.set_next_step(Some(0.125));
         with_group(&rooms.assembly, &rooms.connectors, &mut rooms.groups, &mut group, |dynamics, tools| {

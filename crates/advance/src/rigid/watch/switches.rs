@@ -1,4 +1,4 @@
-//! Early ends of a group's segment that no held row shows: a stop that closes, a force law that changes branch.
+//! Early ends of a group's segment that no active row shows: a stop that closes, a force law that changes branch.
 
 use crate::rigid::connectors::store::Stop;
 use crate::rigid::contacts::rows::moving_of;
@@ -20,7 +20,7 @@ const TICKS_AFTER_END: [f64; 4] = [128.0, 512.0, 2048.0, 8192.0];
 /// switching function is read on the first segment of a group.
 const LOOK_AHEAD: f64 = 1.0 / 1024.0;
 
-/// Offset [s] at which a stop that is not held closes. A stop from which its point has just set out is touched at
+/// Offset [s] at which an inactive stop closes. A stop from which its point has just set out is touched at
 /// the start: the search then covers so short a part of the segment that the point is off the stop. On a closed
 /// rail a point that has gone by a stop seems to have come round: laps are told apart by the value read before.
 pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {

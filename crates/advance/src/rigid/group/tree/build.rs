@@ -1,7 +1,7 @@
 //! Construction of the tree of a group from its pins.
 
 use crate::rigid::bodies::trajectory::Trajectory;
-use crate::rigid::contacts::rows::{HeldRow, Mechanism, RowSource, moving_of};
+use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowSource, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::{Bundle, Hinge, JointTree, Link, Stance};
@@ -48,9 +48,9 @@ impl Dynamics<'_> {
 
     /// Finds the tree of the group, if it has one, where steps may err by `error` [m].
     pub(super) fn find_tree_for(&mut self, error: f64) {
-        let Group { tree, bodies, rows, held, .. } = &mut *self.group;
+        let Group { tree, bodies, rows, active, .. } = &mut *self.group;
         let mechanism = &self.physics.mechanism;
-        if rows.iter().any(|row| !row.bilateral) || held.is_soft() {
+        if rows.iter().any(|row| !row.bilateral) || active.is_soft() {
             return;
         }
         tree.hung.clear();
@@ -144,7 +144,7 @@ impl JointTree {
 }
 
 /// The pin that two consecutive rows belong to; `None` if they are not those of a pin.
-fn pin_of(rows: &[HeldRow], mechanism: &Mechanism<'_>) -> Option<Pin> {
+fn pin_of(rows: &[ActiveRow], mechanism: &Mechanism<'_>) -> Option<Pin> {
     let &[first, second] = rows else { return None };
     let RowSource::Connector(id, 0) = first.source else { return None };
     let connector = &mechanism.connectors[id.index()];

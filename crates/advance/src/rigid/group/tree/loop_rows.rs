@@ -1,4 +1,4 @@
-//! Held rows beside the pins of a tree: those of pins that close loops, of slots, rods, rails.
+//! Active rows beside the pins of a tree: those of pins that close loops, of slots, rods, rails.
 //!
 //! A row pulls the whole tree. With C the accelerations of the tree under a force of 1 N along each row, and J the
 //! Jacobian of the rows, the forces f follow from G f = -(J v' + gamma), G = J C. The rows are few, so G is dense.
@@ -206,8 +206,8 @@ impl Dynamics<'_> {
         self.stage.offsets.clear();
         let mut twin = None;
         for &row in &self.group.tree.loop_rows.rows {
-            let held = &self.group.rows[row];
-            let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
+            let active = &self.group.rows[row];
+            let moment = self.physics.mechanism.measure_next(active, &self.stage.movings, &mut twin);
             let spins = self.group.sides[row].map(|place| self.stage.spin_at(place));
             self.stage.offsets.push(moment.kinematics.acceleration(&spins[0], &spins[1]));
             self.stage.jacobians.push(moment.kinematics.jacobian);
@@ -234,10 +234,10 @@ impl Dynamics<'_> {
         self.stage.jacobians.clear();
         let mut twin = None;
         for &row in &self.group.tree.loop_rows.rows {
-            let held = &self.group.rows[row];
-            let moment = self.physics.mechanism.measure_next(held, &self.stage.movings, &mut twin);
+            let active = &self.group.rows[row];
+            let moment = self.physics.mechanism.measure_next(active, &self.stage.movings, &mut twin);
             self.stage.jacobians.push(moment.kinematics.jacobian);
-            visit(moment.gap - held.gap, moment.kinematics.rate);
+            visit(moment.gap - active.gap, moment.kinematics.rate);
         }
         let Group { tree, bodies, .. } = &mut *self.group;
         tree.find_stances(bodies, &self.stage.movings);

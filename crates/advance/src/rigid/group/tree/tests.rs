@@ -2,7 +2,7 @@
 
 use super::build::MOST_BESIDE;
 use crate::rigid::bodies::trajectory::{FreeMotion, Trajectory};
-use crate::rigid::contacts::rows::{HeldRow, Mechanism, RowSource};
+use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowSource};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::stage::{Stage, set_body_state};
@@ -125,7 +125,7 @@ impl Scene {
         for row in 0..self.connectors[connector].row_count() {
             let source = RowSource::Connector(id, row);
             let (hint, leans) = (None, false);
-            let row = HeldRow { source, bodies, bilateral: true, gap: 0.0, hint, leans };
+            let row = ActiveRow { source, bodies, bilateral: true, gap: 0.0, hint, leans };
             self.group.rows.push(row);
         }
     }
@@ -141,7 +141,7 @@ impl Scene {
             inverse_moment: trajectory.body().inverse_moment,
         };
         let inertias: Vec<_> = trajectories.iter().map(inertia).collect();
-        group.held.set_structure(&inertias, &group.sides);
+        group.active.set_structure(&inertias, &group.sides);
         group.state = vec![0.0; 6 * count];
         for (place, trajectory) in trajectories.iter().enumerate() {
             set_body_state(&mut group.state, count, place, &trajectory.state_at(Time::ZERO));

@@ -1,14 +1,14 @@
 //! Hops too low to be told from contact: a contact opens at a rate v so small that its acceleration a < 0 closes it
-//! again before its gap has grown by much. Such a contact is held at once, instead of being captured a moment later.
+//! again before its gap has grown by much. Such a contact is active at once, instead of being captured a moment later.
 //!
 //! A hop takes T = 2 v/|a| and stays within the target zone, where the landing stops the contact without elasticity. If
 //! the row's coefficients and a are constant meanwhile, stopping the contact as it opens leads to the same positions
 //! and velocities at T. So the less the bodies turn and slide in T, the higher a hop may be, up to the half-width of
 //! the target zone.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::rows::row_of;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::{HALF_ZONE, LARGE, TINY};
 use halfgap_collision::{BodyId, Collision};
@@ -57,17 +57,17 @@ pub(crate) fn opens(assembly: &Assembly, record: &Collision) -> bool {
     record.gap_state().opens(assembly.rest_speed())
 }
 
-/// True if any held contact opens.
-pub(crate) fn any_held_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> bool {
+/// True if any active contact opens.
+pub(crate) fn any_active_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> bool {
     let records = region.records();
-    settling.held.iter().any(|&(index, _)| opens(assembly, &records[index]))
+    settling.active.iter().any(|&(index, _)| opens(assembly, &records[index]))
 }
 
-/// Time [s] until all held contacts that hop are at rest; `None` if no contact that opens makes a low hop.
+/// Time [s] until all active contacts that hop are at rest; `None` if no contact that opens makes a low hop.
 pub(crate) fn time_of_hops(assembly: &Assembly, region: &Region, settling: &Settling) -> Option<f64> {
     let records = region.records();
-    let held = settling.held.iter().map(|&(index, _)| &records[index]);
-    let times = held.filter(|record| opens(assembly, record)).filter_map(|record| {
+    let active = settling.active.iter().map(|&(index, _)| &records[index]);
+    let times = active.filter(|record| opens(assembly, record)).filter_map(|record| {
         let rate = record.motion.normal_velocity;
         let row = row_of(assembly, record);
         // All forces together hold the gap at no acceleration; without the contact's own force it closes at this
@@ -79,15 +79,15 @@ pub(crate) fn time_of_hops(assembly: &Assembly, region: &Region, settling: &Sett
     times.max_by(f64::total_cmp).map(|time| LARGE * time)
 }
 
-/// Force [N] at which a contact is held.
+/// Force [N] at which a contact is active.
 pub(crate) fn force_of(record: &Collision) -> f64 {
     record.response.force.unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::rigid::active_set::hops::is_low_hop;
     use crate::rigid::event::life::dissolve;
-    use crate::rigid::held::hops::is_low_hop;
     use crate::rigid::region::collecting::collect_region;
     use crate::rigid::test_scene::resting_discs;
     use halfgap_collision::BodyId;

@@ -1,7 +1,7 @@
 //! Contacts that run off their features at once: those of a corner at the very end of an edge, along which it moves.
 //!
-//! Such a contact ends before it has had any effect, but as long as it is held its gap follows the continuation of the
-//! edge: as a lid opens, the corner of the box below its hinge would be pressed into the lid. It is left out if no
+//! Such a contact ends before it has had any effect, but as long as it is active its gap follows the continuation of the
+//! edge: as a lid opens, the corner of the box below its hinge would be pressed into the lid. It is excluded if no
 //! forces are found with it.
 
 use crate::rigid::bodies::assembly::Assembly;
@@ -13,7 +13,7 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Moving};
 use halfgap_geometry::{Pose, Rotation};
 
-/// Leaves out the records of a region that run off their features while they slide by `accuracy`.
+/// Excludes the records of a region that run off their features while they slide by `accuracy`.
 pub(crate) fn retain_staying(assembly: &Assembly, connectors: &Connectors, region: &mut Region) {
     region.retain_records(|record| {
         !leaves_at_once(assembly, connectors, record, |body| assembly.moving_at(body, assembly.now()))

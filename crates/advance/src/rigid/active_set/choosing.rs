@@ -1,13 +1,13 @@
-//! Which of the candidates become held rows, and at which gap.
+//! Which of the candidates become active rows, and at which gap.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::bounces::formed_at;
 use crate::rigid::contacts::pairs::Pairs;
-use crate::rigid::contacts::rows::{HeldRow, RowSource, source_of, with_lean};
+use crate::rigid::contacts::rows::{ActiveRow, RowSource, source_of, with_lean};
 use crate::rigid::contacts::touch::{DEEPEST, Touch};
 use crate::rigid::group::stage::Stage;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::remedies::Remedy;
@@ -15,8 +15,8 @@ use crate::rigid::shares::{HALF_ZONE, NEGLIGIBLE};
 use crate::time::Time;
 use halfgap_collision::{Collision, Tolerances};
 
-/// Drops the contacts that carry next to no force; true if any of them carries some at all.
-pub(crate) fn drop_idle(
+/// Makes the contacts inactive that carry next to no force; true if any of them carries some at all.
+pub(crate) fn deactivate_idle(
     assembly: &Assembly,
     pairs: &Pairs,
     region: &mut Region,
@@ -52,7 +52,7 @@ pub(crate) fn drop_idle(
     any
 }
 
-/// Makes held rows of the remaining candidates.
+/// Makes active rows of the remaining candidates.
 pub(crate) fn choose_rows(
     assembly: &Assembly,
     connectors: &Connectors,
@@ -67,19 +67,21 @@ pub(crate) fn choose_rows(
         if lifted.is_some() {
             assembly.remedies().act(Remedy::Lifting);
         }
-        settling.held.extend(held_row(assembly, connectors, record, lifted, time).map(|row| (index, row)));
+        settling
+            .active
+            .extend(active_row(assembly, connectors, record, lifted, time).map(|row| (index, row)));
     }
     settling.list_touches();
 }
 
 /// The row of a record, held at its present gap or at the one [m] to which it is `lifted`.
-fn held_row(
+fn active_row(
     assembly: &Assembly,
     connectors: &Connectors,
     record: &Collision,
     lifted: Option<f64>,
     time: Time,
-) -> Option<HeldRow> {
+) -> Option<ActiveRow> {
     let source = source_of(record)?;
     let bodies = record.bodies();
     let hint = match source {
@@ -90,7 +92,7 @@ fn held_row(
     // its length would move a body that hangs on it by a long arm by much more.
     let bilateral = record.parties.bilateral;
     let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
-    let row = HeldRow { source, bodies, bilateral, gap, hint, leans: false };
+    let row = ActiveRow { source, bodies, bilateral, gap, hint, leans: false };
     Some(with_lean(assembly, connectors, row, time))
 }
 
@@ -119,7 +121,7 @@ fn is_seen(assembly: &Assembly, record: &Collision) -> bool {
     assembly.is_zone_seen(record.bodies())
 }
 
-/// The lower end [m] of the zone in which a row is held. Ropes and stops, which are taut at 0, must not exceed their
+/// The lower end [m] of the zone in which a row is active. Ropes and stops, which are taut at 0, must not exceed their
 /// ends by more than `accuracy`, however they sink.
 fn lower_end(record: &Collision) -> f64 {
     let Tolerances { target_gap, accuracy, .. } = record.tolerances;
@@ -130,7 +132,7 @@ fn lower_end(record: &Collision) -> f64 {
 /// row that has just been lifted may sink once.
 const SUNK: f64 = 1.5;
 
-/// Force of a contact that is rounding, as a fraction of the loads of its bodies; such a contact need not be held. A
+/// Force of a contact that is rounding, as a fraction of the loads of its bodies; such a contact need not be active. A
 /// little more may keep a body in balance: a brick on the joint of two others, which stands on corners next to each
 /// other, would fall over without it.
 const IDLE_SHARE: f64 = 1e-13;

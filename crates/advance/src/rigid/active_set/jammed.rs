@@ -1,8 +1,8 @@
 //! Contact forces so large that rows seem to work against each other.
 
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::group::stage::Stage;
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::MAJOR;
 

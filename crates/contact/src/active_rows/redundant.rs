@@ -1,12 +1,12 @@
-//! Rows that can be spared: where unilateral rows depend on each other, forces can be moved among them, without a
+//! Redundant rows: where unilateral rows depend on each other, forces can be moved among them, without a
 //! change of the motion of the bodies, until the rows that still have a force are independent.
 
-use super::HeldRows;
+use super::ActiveRows;
 use crate::exchanges::{Party, first_to_vanish};
 use crate::problem::pushing;
 
-impl HeldRows {
-    /// Lists in `spared` unilateral rows that can be left out without a change of the motion of the bodies.
+impl ActiveRows {
+    /// Lists in `redundant` unilateral rows that can be excluded without a change of the motion of the bodies.
     ///
     /// Rows for which `may_pull` is true are bilateral. For each unilateral row that depends on others by the last
     /// [`factorize`](Self::factorize), `force` \[N\] (one per row, not negative on unilateral rows) is changed along
@@ -20,9 +20,14 @@ impl HeldRows {
     /// # Panics
     ///
     /// If there is not one force per row.
-    pub fn spare(&mut self, force: &mut [f64], may_pull: impl Fn(usize) -> bool, spared: &mut Vec<usize>) {
+    pub fn find_redundant(
+        &mut self,
+        force: &mut [f64],
+        may_pull: impl Fn(usize) -> bool,
+        redundant: &mut Vec<usize>,
+    ) {
         assert_eq!(force.len(), self.len(), "one force per row");
-        spared.clear();
+        redundant.clear();
         let mut exchanges = std::mem::take(&mut self.exchanges);
         exchanges.clear();
         for place in 0..self.len() {
@@ -37,7 +42,7 @@ impl HeldRows {
                 first_to_vanish(dependent, unilateral.map(|k| self.party(k, self.work[k], force)));
             self.move_forces(place, moved, force, &may_pull);
             force[self.row_at(left.row)] = 0.0;
-            spared.push(self.row_at(left.row));
+            redundant.push(self.row_at(left.row));
             if left.row != place {
                 exchanges.push(dependent, left, &self.work[..place]);
             }
@@ -90,22 +95,22 @@ mod tests {
             Self { inertia, sides, rows }
         }
 
-        fn held(&self) -> (HeldRows, usize) {
-            let mut held = HeldRows::default();
-            held.set_structure(&self.inertia, &self.sides);
-            let dependent = held.factorize(&self.rows);
-            (held, dependent)
+        fn active(&self) -> (ActiveRows, usize) {
+            let mut active = ActiveRows::default();
+            active.set_structure(&self.inertia, &self.sides);
+            let dependent = active.factorize(&self.rows);
+            (active, dependent)
         }
 
         /// Accelerations of the planks under the forces.
         fn change(&self, force: &[f64]) -> Vec<[f64; 3]> {
             let mut change = vec![[0.0; 3]; self.inertia.len()];
-            self.held().0.respond(force, &mut change);
+            self.active().0.respond(force, &mut change);
             change
         }
 
-        fn without(&self, spared: &[usize]) -> Self {
-            let stays = |row: &usize| !spared.contains(row);
+        fn without(&self, redundant: &[usize]) -> Self {
+            let stays = |row: &usize| !redundant.contains(row);
             let rows = || (0..self.rows.len()).filter(stays);
             Self {
                 inertia: self.inertia.clone(),
@@ -119,20 +124,20 @@ mod tests {
     /// factorizations.
     fn spare_all(mut pile: Pile, mut force: Vec<f64>) -> (Pile, Vec<f64>, usize) {
         let mut eliminations = 1;
-        let mut spared = Vec::new();
+        let mut redundant = Vec::new();
         loop {
-            let (mut held, dependent) = pile.held();
+            let (mut active, dependent) = pile.active();
             if dependent == 0 {
                 return (pile, force, eliminations);
             }
-            held.clone().spare(&mut force.clone(), |_| true, &mut spared);
-            assert!(spared.is_empty(), "rows that may pull stay");
-            held.spare(&mut force, |_| false, &mut spared);
-            assert!(!spared.is_empty() && spared.len() <= dependent);
-            assert!(spared.iter().all(|&row| force[row] == 0.0));
-            pile = pile.without(&spared);
+            active.clone().find_redundant(&mut force.clone(), |_| true, &mut redundant);
+            assert!(redundant.is_empty(), "rows that may pull stay");
+            active.find_redundant(&mut force, |_| false, &mut redundant);
+            assert!(!redundant.is_empty() && redundant.len() <= dependent);
+            assert!(redundant.iter().all(|&row| force[row] == 0.0));
+            pile = pile.without(&redundant);
             let mut row = 0..;
-            force.retain(|_| row.next().is_some_and(|row| !spared.contains(&row)));
+            force.retain(|_| row.next().is_some_and(|row| !redundant.contains(&row)));
             eliminations += 1;
         }
     }
@@ -143,8 +148,8 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_spared_without_which_none_pulls() {
-        // Four contacts under a plank that carry its weight, of which two may be spared.
+    fn rows_are_redundant_without_which_none_pulls() {
+        // Four contacts under a plank that carry its weight, of which two are redundant.
         let pile = || Pile::new(&[vec![-0.5, 0.1, 0.2, 0.5]]);
         let force = vec![1.0, 2.0, 3.0, 4.0];
         let before = pile().change(&force);
@@ -172,7 +177,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_spared_row_changes_nothing(
+        fn a_redundant_row_changes_nothing(
             contacts in prop::collection::vec(prop::collection::vec((-1.0..1.0, 0.0..1.0), 1..6), 1..8)
         ) {
             let arms: Vec<Vec<f64>> =

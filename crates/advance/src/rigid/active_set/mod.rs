@@ -1,20 +1,21 @@
-//! The active set: which rows are held after an event.
+//! The active set: which rows are active after an event.
 //!
 //! **Invariant**: the rows chosen carry a force that pushes, in a solution in which no candidate accelerates into another.
 //! The room chooses; it moves nothing.
 //!
 //! `settle`: the problem of the candidates, and the order in which it is solved · `settling`: solvers and buffers ·
-//! `choosing`: which candidates are held, and at which gap · `hops`: contacts that open and close again at once · `jammed`:
-//! forces of rows that work against each other · `passing`, `levers`: contacts that act by next to no lever · `sparing`,
+//! `choosing`: which candidates become active, and at which gap · `hops`: contacts that open and close again at once · `jammed`:
+//! forces of rows that work against each other · `leverless`, `levers`: contacts that act by next to no lever · `dependent`,
 //! `redundant`: candidates that depend on others · `leaving`: contacts that end at once.
 
 pub(super) mod choosing;
+pub(super) mod dependent;
+pub(super) mod exclusion;
 pub(super) mod hops;
 pub(super) mod jammed;
 pub(super) mod leaving;
+pub(super) mod leverless;
 pub(super) mod levers;
-pub(super) mod passing;
 pub(super) mod redundant;
 pub(super) mod settle;
 pub(super) mod settling;
-pub(super) mod sparing;

@@ -1,7 +1,7 @@
-//! The structure of held rows: the rows that share a body, the order of elimination, and the layout of the factor. It
-//! does not change while the same rows are held.
+//! The structure of active rows: the rows that share a body, the order of elimination, and the layout of the factor. It
+//! does not change while the same rows are active.
 
-use super::{HeldRows, NONE};
+use super::{ActiveRows, NONE};
 use crate::problem::InverseInertia;
 
 /// An earlier row on a common body.
@@ -14,7 +14,7 @@ pub(super) struct Shared {
     pub(super) position: u32,
 }
 
-impl HeldRows {
+impl ActiveRows {
     /// Replaces all bodies and rows. `inertia` has the inverse masses of the bodies, `rows` the primary and normal body
     /// of each row: an index into `inertia`, or `None` for an immovable one. Orders the rows for small fill; no row is
     /// soft afterwards. [`factorize`](Self::factorize) must follow.

@@ -1,4 +1,4 @@
-//! Forces of a fixed set of rows held as equations: A f = -b with A = J M⁻¹ Jᵀ, solved repeatedly as J and b change.
+//! Forces of a fixed set of active rows, which are equations: A f = -b with A = J M⁻¹ Jᵀ, solved repeatedly as J and b change.
 //!
 //! This is the inner loop of an integrator: the rows stay, their coefficients change from stage to stage. All that
 //! depends on the structure alone is therefore found once: an order of the rows that keeps the factor narrow (see
@@ -7,15 +7,15 @@
 //! Sparse Positive Definite Systems", 1981, chapter 4.
 //!
 //! A row that depends on those before it (a joint given twice, the third contact under a block) gets no pivot and no
-//! force, unless it is soft: see [`HeldRows::soften`]. The factor leaves a = A f + b at rounding of the terms A_ij f_j.
+//! force, unless it is soft: see [`ActiveRows::soften`]. The factor leaves a = A f + b at rounding of the terms A_ij f_j.
 //! Where earlier rows leave little of a row, as with a heavy body on a light one, that rounding is large beside the
 //! acceleration of the heavy body, and a step of refinement follows. It computes a from the motions of the bodies,
 //! whose rounding all rows share.
 
 mod dependence;
 mod factor;
+mod redundant;
 mod refining;
-mod sparing;
 mod structure;
 
 use crate::exchanges::Exchanges;
@@ -32,7 +32,7 @@ const RESOLVED: f64 = 1e-13;
 /// In place of a body: no body, or an immovable one.
 const NONE: u32 = u32::MAX;
 
-/// Held rows (contacts and connectors) as equations A f = -b, with the structure of their factor kept from solve to
+/// Active rows (contacts and connectors) as equations A f = -b, with the structure of their factor kept from solve to
 /// solve.
 ///
 /// The order of calls is [`set_structure`](Self::set_structure), [`factorize`](Self::factorize) whenever coefficients
@@ -41,24 +41,24 @@ const NONE: u32 = u32::MAX;
 /// # Examples
 ///
 /// ```
-/// use halfgap_contact::{HeldRows, InverseInertia};
+/// use halfgap_contact::{ActiveRows, InverseInertia};
 ///
 /// // A pendulum: a rod of 2 kg and 1 m, pinned at its upper end, lying level; gravity pulls its middle down.
 /// let rod = InverseInertia { inverse_mass: 0.5, inverse_moment: 6.0 };
-/// let mut held = HeldRows::default();
-/// held.set_structure(&[rod], &[[Some(0), None]; 2]);
-/// let dependent = held.factorize(&[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, -0.5, 0.0, 0.0, 0.0]]);
+/// let mut active = ActiveRows::default();
+/// active.set_structure(&[rod], &[[Some(0), None]; 2]);
+/// let dependent = active.factorize(&[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, -0.5, 0.0, 0.0, 0.0]]);
 /// assert_eq!(dependent, 0);
 /// let mut force = [0.0; 2];
-/// held.solve(&[0.0, -9.81], &mut force);
+/// active.solve(&[0.0, -9.81], &mut force);
 /// assert!((force[1] - 2.0 * 9.81 / 4.0).abs() < 1e-14);
 /// let mut change = [[0.0, -9.81, 0.0]];
-/// held.respond(&force, &mut change);
+/// active.respond(&force, &mut change);
 /// assert!((change[0][1] + 0.75 * 9.81).abs() < 1e-14);
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub struct HeldRows {
+pub struct ActiveRows {
     /// Fraction of a row's square up to which its remainder makes it dependent.
     dependence: f64,
     order: RowOrder,
@@ -99,13 +99,13 @@ pub struct HeldRows {
     previous: Vec<u32>,
 }
 
-impl Default for HeldRows {
+impl Default for ActiveRows {
     fn default() -> Self {
         Self::new(&Settings::default())
     }
 }
 
-impl HeldRows {
+impl ActiveRows {
     /// Makes a solver without rows. Of `settings` only [`dependence`](Settings::dependence) is used.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
@@ -332,27 +332,27 @@ mod tests {
         jacobians: &[[f64; 6]],
         offset: &[f64],
     ) -> usize {
-        let mut held = HeldRows::default();
-        held.set_structure(inertia, rows);
-        let dependent = held.factorize(jacobians);
+        let mut active = ActiveRows::default();
+        active.set_structure(inertia, rows);
+        let dependent = active.factorize(jacobians);
         let mut force = vec![f64::NAN; rows.len()];
-        held.solve(offset, &mut force);
+        active.solve(offset, &mut force);
         let (expected, rates) = accelerations(inertia, rows, jacobians, &force);
         let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
         for row in 0..rows.len() {
             // Rows whose remainder is up to the root of the threshold count as dependent.
-            let rounding = if held.is_dependent(row) { 1e-4 } else { 1e-11 };
+            let rounding = if active.is_dependent(row) { 1e-4 } else { 1e-11 };
             let left = rates[row] + offset[row];
             assert!(
                 left.abs() <= rounding * largest,
                 "row {row} of {}: {left}, forces {largest}",
                 rows.len()
             );
-            assert!(!held.is_dependent(row) || force[row] == 0.0);
+            assert!(!active.is_dependent(row) || force[row] == 0.0);
         }
-        assert_eq!((0..rows.len()).filter(|&row| held.is_dependent(row)).count(), dependent);
+        assert_eq!((0..rows.len()).filter(|&row| active.is_dependent(row)).count(), dependent);
         let mut change = vec![[0.0; 3]; inertia.len()];
-        held.respond(&force, &mut change);
+        active.respond(&force, &mut change);
         for (p, q) in change.iter().zip(&expected) {
             assert!((0..3).all(|k| (p[k] - q[k]).abs() <= 1e-12 * largest));
         }
@@ -368,13 +368,13 @@ mod tests {
             .flat_map(|arm| [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, arm, 0.0, 0.0, 0.0]])
             .collect();
         let gravity: Vec<f64> = jacobians.iter().map(|row| -10.0 * row[1]).collect();
-        let mut held = HeldRows::default();
-        held.set_structure(&[INERTIA], &sides);
-        assert_eq!(held.factorize(&jacobians), 3);
-        held.soften(|_| true);
-        assert_eq!(held.factorize(&jacobians), 0);
+        let mut active = ActiveRows::default();
+        active.set_structure(&[INERTIA], &sides);
+        assert_eq!(active.factorize(&jacobians), 3);
+        active.soften(|_| true);
+        assert_eq!(active.factorize(&jacobians), 0);
         let mut force = [f64::NAN; 6];
-        held.solve(&gravity, &mut force);
+        active.solve(&gravity, &mut force);
         let (change, _) = accelerations(&[INERTIA], &sides, &jacobians, &force);
         assert!((change[0][1] - 10.0).abs() < 1e-12 && change[0][2].abs() < 1e-12, "{change:?}");
         // The least forces, each weighed by its row's square, that carry 12.5 N without a torque: (p + q arm)/square.
@@ -389,7 +389,7 @@ mod tests {
         // A disagreement of the rows moves nothing, and its forces stay bounded.
         let mut disagreeing = gravity.clone();
         disagreeing[1] += 1e-9;
-        held.solve(&disagreeing, &mut force);
+        active.solve(&disagreeing, &mut force);
         let (change, _) = accelerations(&[INERTIA], &sides, &jacobians, &force);
         assert!((change[0][1] - 10.0).abs() < 1e-8, "{change:?}");
         assert!(force.iter().all(|force| force.abs() < 20.0), "{force:?}");
@@ -419,10 +419,10 @@ mod tests {
         let inertia = vec![INERTIA; links as usize];
         let offset: Vec<f64> = (0..2 * links).map(|k| f64::from(k % 3) - 9.81).collect();
         assert_eq!(check(&inertia, &rows, &jacobians, &offset), 0);
-        let mut held = HeldRows::default();
-        held.set_structure(&inertia, &rows);
+        let mut active = ActiveRows::default();
+        active.set_structure(&inertia, &rows);
         let entries: usize = (0..rows.len())
-            .map(|place| held.factor.entries(place).filter(|entry| *entry != 0.0).count())
+            .map(|place| active.factor.entries(place).filter(|entry| *entry != 0.0).count())
             .sum();
         assert!(entries <= 3 * rows.len(), "{entries} entries");
     }
@@ -451,11 +451,11 @@ mod tests {
         let rows: Vec<_> = pins.iter().flat_map(|(sides, _)| *sides).collect();
         let jacobians: Vec<_> = pins.iter().flat_map(|(_, pair)| *pair).collect();
         let inertia = [light, heavy, INERTIA];
-        let mut held = HeldRows::default();
-        held.set_structure(&inertia, &rows);
-        assert_eq!(held.factorize(&jacobians), 1);
-        held.soften(|_| true);
-        assert!(held.is_soft() && held.factorize(&jacobians) == 0);
+        let mut active = ActiveRows::default();
+        active.set_structure(&inertia, &rows);
+        assert_eq!(active.factorize(&jacobians), 1);
+        active.soften(|_| true);
+        assert!(active.is_soft() && active.factorize(&jacobians) == 0);
         let falls = |side: Option<u32>| if side.is_some() { -9.81 } else { 0.0 };
         let offset: Vec<_> = rows
             .iter()
@@ -463,7 +463,7 @@ mod tests {
             .map(|(sides, row)| row[1] * falls(sides[0]) + row[4] * falls(sides[1]))
             .collect();
         let mut force = vec![0.0; rows.len()];
-        held.solve(&offset, &mut force);
+        active.solve(&offset, &mut force);
         let (_, rates) = accelerations(&inertia, &rows, &jacobians, &force);
         // Forces of 4e5 N on a body of a gram.
         assert!(rates.iter().zip(&offset).all(|(rate, offset)| (rate + offset).abs() < 1e-6), "{rates:?}");
@@ -487,14 +487,14 @@ mod tests {
 
     #[test]
     fn another_structure_can_follow() {
-        let mut held = HeldRows::default();
+        let mut active = ActiveRows::default();
         for count in [3usize, 1, 5] {
             let rows: Vec<_> = (0..count).map(|k| [Some(k as u32), None]).collect();
-            held.set_structure(&vec![INERTIA; count], &rows);
-            assert_eq!(held.len(), count);
-            assert_eq!(held.factorize(&vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; count]), 0);
+            active.set_structure(&vec![INERTIA; count], &rows);
+            assert_eq!(active.len(), count);
+            assert_eq!(active.factorize(&vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; count]), 0);
             let mut force = vec![0.0; count];
-            held.solve(&vec![-0.8; count], &mut force);
+            active.solve(&vec![-0.8; count], &mut force);
             assert!(force.iter().all(|f| (f - 1.0).abs() < 1e-15));
         }
     }

@@ -1,36 +1,36 @@
-//! Candidates that are spared: as equations they would depend on others.
+//! Candidates that are excluded because as equations they would depend on others.
 
+use crate::rigid::active_set::jammed::is_jam;
+use crate::rigid::active_set::redundant::{Redundant, Rows};
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::group::stage::Stage;
-use crate::rigid::held::jammed::is_jam;
-use crate::rigid::held::redundant::{Redundant, Rows};
-use crate::rigid::held::settling::Settling;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::remedies::Remedy;
 
-/// Spares candidates until none depends on the others, such that the remaining contacts do not pull if none pulled
-/// in the solution found. In a jam, whose rows contradict each other, none is spared; nor at the start, unless a
+/// Excludes candidates until none depends on the others, such that the remaining contacts do not pull if none pulled
+/// in the solution found. In a jam, whose rows contradict each other, none is excluded; nor at the start, unless a
 /// contact would pull by elimination. The problem must be that of the candidates.
-pub(crate) fn spare_redundant(
+pub(crate) fn exclude_dependent(
     assembly: &Assembly,
     region: &mut Region,
     settling: &mut Settling,
     stage: &Stage,
 ) {
     let Settling { candidates, redundant, problem, .. } = settling;
-    let Redundant { rows, held, as_held, .. } = redundant;
+    let Redundant { rows, active, as_active, .. } = redundant;
     list_candidates(assembly, region, candidates, rows);
     let largest = rows.largest_force();
     if is_jam(assembly, region, stage, largest) {
         return;
     }
     let is_start = region.cause() == Cause::Start;
-    if is_start && (rows.factorize(held) == 0 || !rows.pulls(held, problem.offset(), as_held)) {
+    if is_start && (rows.factorize(active) == 0 || !rows.pulls(active, problem.offset(), as_active)) {
         return;
     }
-    assembly.remedies().act(Remedy::Sparing);
-    rows.spare(held, region, candidates);
+    assembly.remedies().act(Remedy::DependentRows);
+    rows.exclude_dependent(active, region, candidates);
 }
 
 /// Lists the rows of the candidates and their forces.

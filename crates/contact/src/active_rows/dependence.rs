@@ -4,7 +4,7 @@
 //! share of the heavy one. The row holds the heavy body all the same. The remainder is therefore also compared body by
 //! body with the motions that all rows of the combination give the body.
 
-use super::{HeldRows, NONE};
+use super::{ActiveRows, NONE};
 
 /// Fraction of itself by which the square A_ii of a soft row is raised: far more than the rounding of a dependent row's
 /// remainder, far less than the remainder of an independent row.
@@ -12,7 +12,7 @@ const SOFTNESS: f64 = 1e-6;
 /// Fraction of a dependent row's square: the row depends on the rows whose parts in it have squares above this.
 const SHARE: f64 = 1e-12;
 
-impl HeldRows {
+impl ActiveRows {
     /// Lets rows share their load from the next [`factorize`](Self::factorize) on: those that the last one found to
     /// depend on each other, and for which `may_share` (called with the index of a row) is true. None of these then
     /// counts as dependent, and their forces are nearly those of least norm, weighted by the squares of the rows. All
@@ -56,7 +56,7 @@ impl HeldRows {
     }
 
     /// Returns the fraction of its square that a row kept in the last [`factorize`](Self::factorize) once earlier ones
-    /// were held: the least of all rows after the `aside` rows that kept even less. 1 if there are no more rows. Where
+    /// were active: the least of all rows after the `aside` rows that kept even less. 1 if there are no more rows. Where
     /// it falls to 0, rows of loops depend on each other for a moment.
     #[must_use]
     #[inline]
@@ -137,18 +137,18 @@ mod tests {
     #[test]
     fn the_share_that_rows_keep_falls_with_the_square_of_the_way_to_where_they_depend() {
         // Two rods hold a disc along directions that come together, and a third doubles the first.
-        let mut held = HeldRows::default();
-        held.set_structure(
+        let mut active = ActiveRows::default();
+        active.set_structure(
             &[InverseInertia { inverse_mass: 2.0, inverse_moment: 1.0 }],
             &[[Some(0), None]; 3],
         );
         let along = |angle: f64| [angle.cos(), angle.sin(), 0.0, 0.0, 0.0, 0.0];
         for angle in [0.3, 1e-2, 1e-4] {
-            held.factorize(&[along(0.0), along(angle), along(0.0)]);
+            active.factorize(&[along(0.0), along(angle), along(0.0)]);
             let sine = angle.sin();
-            assert!((held.kept_beyond(1) / (sine * sine) - 1.0).abs() < 1e-6, "{angle}");
-            assert!(held.kept_beyond(0) < 1e-12);
-            assert_eq!([held.kept_beyond(2), held.kept_beyond(3)], [1.0; 2]);
+            assert!((active.kept_beyond(1) / (sine * sine) - 1.0).abs() < 1e-6, "{angle}");
+            assert!(active.kept_beyond(0) < 1e-12);
+            assert_eq!([active.kept_beyond(2), active.kept_beyond(3)], [1.0; 2]);
         }
     }
 
@@ -159,14 +159,14 @@ mod tests {
         let rows: Vec<_> = to_world.into_iter().chain(between).collect();
         let sides = [[Some(0), None], [Some(0), None], [Some(0), Some(1)], [Some(0), Some(1)]];
         for heavy in [1e3, 1e9, 1e11] {
-            let mut held = HeldRows::default();
-            held.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
-            assert_eq!(held.factorize(&rows), 0, "{heavy:e}");
+            let mut active = ActiveRows::default();
+            active.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
+            assert_eq!(active.factorize(&rows), 0, "{heavy:e}");
             let offset: Vec<f64> = rows.iter().map(|row| -9.81 * (row[1] + row[4])).collect();
             let mut force = [0.0; 4];
-            held.solve(&offset, &mut force);
+            active.solve(&offset, &mut force);
             let mut change = [[0.0, -9.81, 0.0]; 2];
-            held.respond(&force, &mut change);
+            active.respond(&force, &mut change);
             // The light body is nearly a massless bar from which the heavy one hangs: the rows of the lower pin keep a
             // rate of zero.
             let rate = |row: &[f64; 6]| (0..6).map(|k| row[k] * change[k / 3][k % 3]).sum::<f64>();
@@ -182,9 +182,9 @@ mod tests {
                 .into_iter()
                 .flatten()
                 .collect();
-        let mut held = HeldRows::default();
-        held.set_structure(&[inertia(1.0), inertia(1e11)], &[[Some(0), Some(1)]; 6]);
-        assert_eq!(held.factorize(&rows), 3);
+        let mut active = ActiveRows::default();
+        active.set_structure(&[inertia(1.0), inertia(1e11)], &[[Some(0), Some(1)]; 6]);
+        assert_eq!(active.factorize(&rows), 3);
     }
 
     #[test]
@@ -199,9 +199,9 @@ mod tests {
             let to_world = |arm: usize| pin(arms[arm], [0.0; 2]);
             let pins = [to_world(0), pin(arms[1], arms[2]), to_world(3), to_world(4)];
             let rows: Vec<_> = pins.into_iter().flatten().collect();
-            let mut held = HeldRows::default();
-            held.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
-            assert_eq!(held.factorize(&rows), 2, "{heavy:e}");
+            let mut active = ActiveRows::default();
+            active.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
+            assert_eq!(active.factorize(&rows), 2, "{heavy:e}");
         }
     }
 }

@@ -1,17 +1,18 @@
 //! The complementarity problem of an event's candidates: its solvers and buffers, its initial guess, and the rows that
-//! result. `settle` decides which rows are candidates, and which of them are held.
+//! result. `settle` decides which rows are candidates, and which of them become active.
 
+use crate::rigid::active_set::exclusion::Excluded;
+use crate::rigid::active_set::levers::Levers;
+use crate::rigid::active_set::redundant::Redundant;
 use crate::rigid::books::report::RowForce;
-use crate::rigid::contacts::rows::HeldRow;
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::contacts::touch::Touch;
-use crate::rigid::held::levers::Levers;
-use crate::rigid::held::redundant::Redundant;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::NEGLIGIBLE;
 use halfgap_collision::BodyId;
 use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
-/// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are held.
+/// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are active.
 const LENIENT_RESIDUAL: f64 = 1e-6;
 
 /// Solvers for contact forces, with their buffers.
@@ -33,12 +34,8 @@ pub(crate) struct Settling {
     /// Indices of the records that enter the problem.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) candidates: Vec<usize>,
-    /// Indices of the records that were left out because rows seemed to work against each other.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) dropped: Vec<usize>,
-    /// Contacts that were left out because they act by next to no lever: they may come as near as grazing contacts.
-    #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) passing: Vec<Touch>,
+    pub(super) excluded: Vec<Excluded>,
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) levers: Levers,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -59,10 +56,10 @@ pub(crate) struct Settling {
     /// The solver's initial guess for the candidates.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) guess: WarmStart,
-    /// The rows to be held, with the index of each one's record.
+    /// The active rows, with the index of each one's record.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) held: Vec<(usize, HeldRow)>,
-    /// The contacts among the rows to be held, sorted.
+    pub(super) active: Vec<(usize, ActiveRow)>,
+    /// The contacts among the active rows, sorted.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) touches: Vec<Touch>,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -80,7 +77,7 @@ impl Default for Settling {
         let settings = Settings {
             // Nearly redundant contacts that contradict each other get modest forces.
             contradiction: halfgap_contact::Contradiction::LeastSquares,
-            // Rows that carry force will be held, and should not depend on each other.
+            // Rows that carry force become active, and should not depend on each other.
             selection: halfgap_contact::ForceSelection::Pivoted,
             ..Settings::default()
         };
@@ -96,8 +93,7 @@ impl Default for Settling {
             has_pulled: false,
             lenient: solver(lenient),
             candidates: Vec::new(),
-            dropped: Vec::new(),
-            passing: Vec::new(),
+            excluded: Vec::new(),
             levers: Levers::default(),
             redundant: Redundant::default(),
             likely: Vec::new(),
@@ -105,7 +101,7 @@ impl Default for Settling {
             forces: Vec::new(),
             ended: Vec::new(),
             guess: WarmStart::new(),
-            held: Vec::new(),
+            active: Vec::new(),
             touches: Vec::new(),
             laws: Vec::new(),
             gross: Vec::new(),
@@ -148,9 +144,9 @@ impl Settling {
         self.forces.clear();
     }
 
-    /// Releases the held records that open, however low they hop.
+    /// Releases the active records that open, however low they hop.
     pub(crate) fn let_leave(&mut self, opens: impl Fn(usize) -> bool) {
-        for &(record, _) in &self.held {
+        for &(record, _) in &self.active {
             self.leaving[record] |= opens(record);
         }
     }
@@ -175,32 +171,14 @@ impl Settling {
         }));
     }
 
-    /// Takes back the dropped records that are wanted as candidates; true if there are any.
-    pub(super) fn take_back(&mut self, is_wanted: impl Fn(usize) -> bool) -> bool {
-        let before = self.dropped.len();
-        let Self { candidates, dropped, .. } = self;
-        dropped.retain(|&index| {
-            let is_wanted = is_wanted(index);
-            candidates.extend(is_wanted.then_some(index));
-            !is_wanted
-        });
-        candidates.sort_unstable();
-        dropped.len() < before
-    }
-
-    /// True if a contact was left out because it acts by next to no lever.
-    pub(crate) fn lets_pass(&self, touch: Touch) -> bool {
-        self.passing.contains(&touch)
-    }
-
-    /// True if a contact is held from now on.
-    pub(crate) fn holds_touch(&self, touch: Touch) -> bool {
+    /// True if a contact is active from now on.
+    pub(crate) fn is_active(&self, touch: Touch) -> bool {
         self.touches.binary_search(&touch).is_ok()
     }
 
     pub(super) fn list_touches(&mut self) {
         self.touches.clear();
-        self.touches.extend(self.held.iter().filter_map(|(_, row)| row.touch()));
+        self.touches.extend(self.active.iter().filter_map(|(_, row)| row.touch()));
         self.touches.sort_unstable();
     }
 
@@ -245,10 +223,10 @@ impl Settling {
 }
 
 impl Settling {
-    /// The rows to be held, with the index of each one's record.
+    /// The active rows, with the index of each one's record.
     #[inline]
-    pub(crate) fn held(&self) -> &[(usize, HeldRow)] {
-        &self.held
+    pub(crate) fn active(&self) -> &[(usize, ActiveRow)] {
+        &self.active
     }
 }
 

@@ -2,7 +2,7 @@
 //! rounding of the factor where little is left of a row. The parent module decides which rows are soft, and owns the
 //! factor.
 
-use super::{HeldRows, NONE};
+use super::{ActiveRows, NONE};
 use crate::skyline::dot;
 
 /// Cap on the refinement steps for soft rows.
@@ -32,7 +32,7 @@ pub(super) struct Refining {
     best: Vec<f64>,
 }
 
-impl HeldRows {
+impl ActiveRows {
     /// Refines the forces by conjugate gradients, preconditioned by the raised factor. It differs from A in few
     /// directions, each of which takes about a step. A disagreement of rows that depend on each other cannot be
     /// removed; the forces with the least residual are kept.
@@ -146,12 +146,12 @@ mod tests {
                     .map(|&at| [0.0, 1.0, at, 0.0, 0.0, 0.0])
                     .chain([-0.9 * arm, arm].iter().map(|&at| [0.0, 1.0, at, 0.0, -1.0, -at]))
                     .collect();
-                let mut held = HeldRows::default();
-                held.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
-                assert_eq!(held.factorize(&rows), 0);
+                let mut active = ActiveRows::default();
+                active.set_structure(&[inertia(1.0), inertia(heavy)], &sides);
+                assert_eq!(active.factorize(&rows), 0);
                 let offset: Vec<f64> = rows.iter().map(|row| -9.81 * (row[1] + row[4])).collect();
                 let mut force = [0.0; 4];
-                held.solve(&offset, &mut force);
+                active.solve(&offset, &mut force);
                 let weight = 9.81 * heavy;
                 let off = |sum: f64, weight: f64| (sum / weight - 1.0).abs();
                 let errors = [off(force[2] + force[3], weight), off(force[0] + force[1], weight + 9.81)];
@@ -176,19 +176,19 @@ mod tests {
         let second = |first: [f64; 2]| [first[0] + between[0], first[1] + between[1]];
         let pins = [pin(on_block, on_disc), pin(second(on_block), second(on_disc))];
         let rows: Vec<[f64; 6]> = pins.into_iter().flatten().collect();
-        let mut held = HeldRows::default();
-        held.set_structure(&[block, disc], &[[Some(0), Some(1)]; 4]);
-        assert_eq!(held.factorize(&rows), 1);
-        held.soften(|_| true);
-        assert_eq!(held.factorize(&rows), 0);
+        let mut active = ActiveRows::default();
+        active.set_structure(&[block, disc], &[[Some(0), Some(1)]; 4]);
+        assert_eq!(active.factorize(&rows), 1);
+        active.soften(|_| true);
+        assert_eq!(active.factorize(&rows), 0);
         // The disc turns fast.
         let motion = [0.0, 0.0, 0.0, 5.9, -7.0, -71828.6];
         let rate = |row: &[f64; 6], motion: &[f64]| row.iter().zip(motion).map(|(j, v)| j * v).sum::<f64>();
         let offset: Vec<f64> = rows.iter().map(|row| rate(row, &motion)).collect();
         let mut force = [0.0; 4];
-        held.solve(&offset, &mut force);
+        active.solve(&offset, &mut force);
         let mut change = [[0.0; 3]; 2];
-        held.respond(&force, &mut change);
+        active.respond(&force, &mut change);
         let left = rows.iter().zip(&offset).map(|(row, offset)| rate(row, change.as_flattened()) + offset);
         let left: Vec<f64> = left.collect();
         assert!(largest(&left) < 1e-11 * largest(&offset), "{left:?} of {offset:?}");

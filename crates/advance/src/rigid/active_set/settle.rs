@@ -1,10 +1,17 @@
-//! Choice of the rows that are held after an event: those that carry a force.
+//! Choice of the rows that are active after an event: those that carry a force.
 //!
 //! All touching rows that neither close nor open are candidates and enter one complementarity problem a = A f + b. A
-//! row that carries a force is held as an equation from then on; one that does not is left to the search for contacts,
+//! row that carries a force is active, an equation, from then on; one that does not is left to the search for contacts,
 //! which watches its gap. Forces of redundant rows are not unique: a row that the solution leaves without force follows
 //! from the others.
 
+use crate::rigid::active_set::choosing::{choose_rows, deactivate_idle, places_of};
+use crate::rigid::active_set::dependent::exclude_dependent;
+use crate::rigid::active_set::exclusion::{Excluded, Exclusion};
+use crate::rigid::active_set::hops::{is_low_hop, may_hop};
+use crate::rigid::active_set::jammed::is_jammed;
+use crate::rigid::active_set::leverless::exclude_leverless;
+use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::squeezed::{HOPELESS_MASS_RATIO, LARGEST_MASS_RATIO};
 use crate::rigid::connectors::store::Connectors;
@@ -14,12 +21,6 @@ use crate::rigid::group::groups::Groups;
 use crate::rigid::group::physics::physics;
 use crate::rigid::group::segment::LONGEST_STEP;
 use crate::rigid::group::stage::Stage;
-use crate::rigid::held::choosing::{choose_rows, drop_idle, places_of};
-use crate::rigid::held::hops::{is_low_hop, may_hop};
-use crate::rigid::held::jammed::is_jammed;
-use crate::rigid::held::passing::let_pass;
-use crate::rigid::held::settling::Settling;
-use crate::rigid::held::sparing::spare_redundant;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
@@ -51,9 +52,9 @@ pub(crate) fn settle(
     time: Time,
     with_hops: bool,
 ) -> Result<(), AdvanceError> {
-    settling.held.clear();
+    settling.active.clear();
     settling.touches.clear();
-    settling.passing.clear();
+    settling.excluded.clear();
     settling.candidates.clear();
     let is_start = region.cause() == Cause::Start;
     settling.is_start = is_start;
@@ -76,27 +77,31 @@ pub(crate) fn settle(
     }
     accelerate_region(view.assembly, view.connectors, region, settling, stage, time);
     let mut solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
-    // Held contacts may press others back, or keep those that open from coming back.
+    // Active contacts may press others back, or keep those that open from coming back.
     while with_hops && solved != Solved::Somehow && add_hops(view.assembly, region, settling, stage) {
         solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
     }
     if solved == Solved::Nothing {
         return Ok(());
     }
-    // A contact that carries too little to be held is given no force: the others are solved without it.
-    while drop_idle(view.assembly, view.pairs, region, settling, stage) {
+    // A contact that carries too little to be active is given no force: the others are solved without it.
+    while deactivate_idle(view.assembly, view.pairs, region, settling, stage) {
         solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
     }
-    if (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::Sparing) {
-        // The last problem may still have had candidates that were then dropped without a force.
+    if (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::DependentRows) {
+        // The last problem may still have had candidates that then became inactive without a force.
         pose_problem(view.assembly, region, settling, stage);
-        spare_redundant(view.assembly, region, settling, stage);
+        exclude_dependent(view.assembly, region, settling, stage);
     }
     choose_rows(view.assembly, view.connectors, view.pairs, region, settling, time);
-    view.assembly.refuse_squeezed(settling.held.iter().map(|(_, row)| row.bodies), HOPELESS_MASS_RATIO, time)
+    view.assembly.refuse_squeezed(
+        settling.active.iter().map(|(_, row)| row.bodies),
+        HOPELESS_MASS_RATIO,
+        time,
+    )
 }
 
-/// Finds the forces of the candidates; leaves some of them out if they jam or no solution is found.
+/// Finds the forces of the candidates; excludes some of them if they jam or no solution is found.
 fn solve_candidates(
     assembly: &Assembly,
     connectors: &Connectors,
@@ -116,8 +121,10 @@ fn solve_candidates(
     if is_sound && !is_jammed(assembly, region, settling, stage) {
         return Ok(Solved::Soundly);
     }
-    if assembly.remedies().is_on(Remedy::LetPass) && let_pass(assembly, connectors, region, settling) {
-        assembly.remedies().act(Remedy::LetPass);
+    if assembly.remedies().is_on(Remedy::Leverless)
+        && exclude_leverless(assembly, connectors, region, settling)
+    {
+        assembly.remedies().act(Remedy::Leverless);
         pose_problem(assembly, region, settling, stage);
         is_sound = settling.solve_strictly().is_ok();
         if is_sound && !is_jammed(assembly, region, settling, stage) {
@@ -125,16 +132,20 @@ fn solve_candidates(
         }
     }
     let remedies = assembly.remedies();
-    settling.dropped.clear();
+    settling.excluded.retain(|excluded| excluded.why != Exclusion::Distant);
     if remedies.act(Remedy::JammedForces) {
-        drop_distant(assembly, region, settling, stage);
+        exclude_distant(assembly, region, settling, stage);
     }
     let mut found = settling.solve_strictly();
-    while is_sound && found.is_ok() && take_back_pressed(assembly, region, settling, stage) {
+    while is_sound && found.is_ok() && readmit_pressed(assembly, region, settling, stage) {
         pose_problem(assembly, region, settling, stage);
         found = settling.solve_strictly();
     }
-    let solved = if is_sound && settling.dropped.is_empty() { Solved::Soundly } else { Solved::Somehow };
+    let solved = if is_sound && !settling.any_excluded(Exclusion::Distant) {
+        Solved::Soundly
+    } else {
+        Solved::Somehow
+    };
     if let Err(source) = found {
         // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.
@@ -176,15 +187,16 @@ fn add_hops(assembly: &Assembly, region: &Region, settling: &mut Settling, stage
     settling.candidates.len() > before && assembly.remedies().act(Remedy::LowHops)
 }
 
-/// True if a record of a region, given with its index, may hop, and has not been released or left out.
+/// True if a record of a region, given with its index, may hop, and has not been released or excluded.
 fn could_hop(
     assembly: &Assembly,
     region: &Region,
     settling: &Settling,
     (index, record): (usize, &Collision),
 ) -> bool {
-    let passes = || Touch::of(record).is_some_and(|touch| settling.lets_pass(touch));
-    !settling.leaves(index) && holds(assembly, record) && may_hop(assembly, region, record) && !passes()
+    let is_excluded =
+        || Touch::of(record).is_some_and(|touch| settling.is_excluded(touch, Exclusion::Leverless));
+    !settling.leaves(index) && holds(assembly, record) && may_hop(assembly, region, record) && !is_excluded()
 }
 
 /// Finds the accelerations of a region's bodies under the forces of the candidates.
@@ -212,26 +224,29 @@ pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
     assembly.settings().impulse_step.is_none() || record.parties.primary.site.is_none()
 }
 
-/// Leaves out contacts beyond their target gap, which need not be in contact: a body that fits between two others
+/// Excludes contacts beyond their target gap, which need not be in contact: a body that fits between two others
 /// with little room touches at most one of them.
-fn drop_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
-    let Settling { candidates, dropped, .. } = settling;
+fn exclude_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
+    let Settling { candidates, excluded, .. } = settling;
     let may_stay = |index: &usize| region.records()[*index].gap_state().is_at_target(assembly.sink());
-    dropped.clear();
-    dropped.extend(candidates.iter().copied().filter(|index| !may_stay(index)));
+    let distant = candidates.iter().copied().filter(|index| !may_stay(index));
+    excluded.extend(distant.map(|record| {
+        let touch = Touch::of(&region.records()[record]);
+        Excluded { record, touch, why: Exclusion::Distant }
+    }));
     candidates.retain(may_stay);
     pose_problem(assembly, region, settling, stage);
 }
 
-/// Takes back the contacts left out that the forces found without them press together; true if there are any. A
+/// Admits again the excluded contacts that the forces found without them press together; true if there are any. A
 /// body that fits with little room is pressed on one side only. In an arch that is nearly straight all contacts
-/// carry forces far larger than all loads: if the remaining candidates jam, too, all contacts are taken back.
-fn take_back_pressed(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
-    if settling.dropped.is_empty() {
+/// carry forces far larger than all loads: if the remaining candidates jam, too, all contacts are admitted.
+fn readmit_pressed(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) -> bool {
+    if !settling.any_excluded(Exclusion::Distant) {
         return false;
     }
     if is_jammed(assembly, region, settling, stage) {
-        settling.take_back(|_| true);
+        settling.readmit_distant(|_| true);
         return true;
     }
     push_bodies(assembly, region, settling, stage);
@@ -239,7 +254,7 @@ fn take_back_pressed(assembly: &Assembly, region: &Region, settling: &mut Settli
     let pushed = std::mem::take(&mut settling.pushed);
     let is_pressed =
         |index: usize| offset_under(region, &region.records()[index], &pushed) < -NEGLIGIBLE * scale;
-    let any = settling.take_back(is_pressed);
+    let any = settling.readmit_distant(is_pressed);
     settling.pushed = pushed;
     any
 }
@@ -343,7 +358,7 @@ mod tests {
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
-    /// True if the contact of a disc is held that touches a beam on two posts from below, departs at 1e-8 m/s, and is
+    /// True if the contact of a disc is active that touches a beam on two posts from below, departs at 1e-8 m/s, and is
     /// pushed up with an acceleration [m/s^2].
     fn beam_holds_disc_below(push: f64) -> bool {
         let gap: f64 = FINE.tolerances.target_gap;
@@ -379,8 +394,8 @@ mod tests {
         settling.set_likely(region.records().iter().map(|_| None));
         let mut stage = rooms.groups.take_stage();
         settle(&rooms.view(), region, settling, &mut stage, rooms.assembly.now(), true).expect("it rests");
-        assert!(settling.held.len() >= 2, "the posts hold the beam");
-        settling.holds_touch(touch)
+        assert!(settling.active.len() >= 2, "the posts hold the beam");
+        settling.is_active(touch)
     }
 
     #[test]
