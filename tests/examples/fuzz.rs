@@ -8,7 +8,7 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --coarse   # with zones that one can see
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --impulses # with contacts that carry impulses only
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --varied   # reference scenes with other numbers
-//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --needs haste,storms   # tells which scenes need a remedy
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --needs haste,accumulation   # tells which scenes need a remedy
 //! ```
 //!
 //! Scenes run in processes of their own, two at a time (`--jobs`), so that one that hangs or overflows is found too.

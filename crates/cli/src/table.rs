@@ -104,7 +104,7 @@ fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
         ("interventions", ledger.interventions),
         ("damping", ledger.damping),
     ];
-    let laws = ledger.laws.iter().map(|law| (law.law.as_str(), law.work));
+    let force_laws = ledger.force_laws.iter().map(|law| (law.law.as_str(), law.work));
     text.push_str("\nenergy ledger\n");
     let mut push = |name: &str, joules: f64, is_told: bool| {
         let joules = booked(joules, scale);
@@ -112,7 +112,7 @@ fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
             let _ = writeln!(text, "  {name:30} {joules:>16} J");
         }
     };
-    fixed.into_iter().chain(laws).for_each(|(name, joules)| push(name, joules, false));
+    fixed.into_iter().chain(force_laws).for_each(|(name, joules)| push(name, joules, false));
     push("integration error", ledger.integration_error(), true);
     push("corrections before the start", ledger.start_correction, false);
 }

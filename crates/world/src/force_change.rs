@@ -51,8 +51,8 @@ impl World {
         on_event: &mut dyn FnMut(&Event),
     ) -> Result<ForceId, RunError> {
         self.check_force(law.as_ref()).map_err(|source| RunError::BadForce { source: Box::new(source) })?;
-        let id = ForceId(self.strategy.laws().len());
-        self.interrupt(on_event, |strategy, now| strategy.add_law(now, law))?;
+        let id = ForceId(self.strategy.force_laws().len());
+        self.interrupt(on_event, |strategy, now| strategy.add_force_law(now, law))?;
         Ok(id)
     }
 
@@ -63,13 +63,13 @@ impl World {
     /// [`RunError::NoSuchForce`] if the world never had it: nothing is done then. Another error as of
     /// [`add_force`](Self::add_force).
     pub fn remove_force(&mut self, force: ForceId, on_event: &mut dyn FnMut(&Event)) -> Result<(), RunError> {
-        if force.0 >= self.strategy.laws().len() {
+        if force.0 >= self.strategy.force_laws().len() {
             return Err(RunError::NoSuchForce);
         }
         if !self.strategy.is_acting(force.0) {
             return Ok(());
         }
-        self.interrupt(on_event, |strategy, now| strategy.remove_law(now, force.0))
+        self.interrupt(on_event, |strategy, now| strategy.remove_force_law(now, force.0))
     }
 
     fn check_force(&self, law: &dyn ForceLaw) -> Result<(), WorldError> {

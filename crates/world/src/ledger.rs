@@ -26,7 +26,7 @@ pub struct Ledger {
     /// Work of linear and angular damping [J], a loss.
     pub damping: f64,
     /// Work of each force law that has no potential, in the order of the laws.
-    pub laws: Vec<LawWork>,
+    pub force_laws: Vec<LawWork>,
 }
 
 /// The work of a force law.
@@ -43,8 +43,8 @@ impl Ledger {
     /// Returns the sum of all booked changes [J].
     #[must_use]
     pub fn booked(&self) -> f64 {
-        let laws: f64 = self.laws.iter().map(|law| law.work).sum();
-        self.impacts + self.captures + self.projections + self.interventions + self.damping + laws
+        let force_laws: f64 = self.force_laws.iter().map(|law| law.work).sum();
+        self.impacts + self.captures + self.projections + self.interventions + self.damping + force_laws
     }
 
     /// Returns the error of the integration [J]: the change of the energy since the start less the booked changes.
@@ -82,7 +82,7 @@ impl Books {
 
 impl From<&Ledger> for Books {
     fn from(ledger: &Ledger) -> Self {
-        let works = ledger.laws.iter().map(|law| law.work.abs()).sum();
+        let works = ledger.force_laws.iter().map(|law| law.work.abs()).sum();
         let Ledger { now, start, captures, projections, interventions: given, .. } = *ledger;
         Self { now, start, booked: ledger.booked(), captures, projections, given, works }
     }
@@ -128,7 +128,7 @@ mod tests {
             projections: 0.25,
             interventions: 10.0,
             damping: -1.0,
-            laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],
+            force_laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],
         };
         assert_eq!(ledger.booked(), 7.25);
         assert_eq!(ledger.integration_error(), -10.25);

@@ -242,7 +242,7 @@ impl Serialize for Ledger {
             ledger.serialize_field("interventions", &self.interventions)?;
         }
         ledger.serialize_field("damping", &self.damping)?;
-        ledger.serialize_field("laws", &self.laws)?;
+        ledger.serialize_field("laws", &self.force_laws)?;
         ledger.serialize_field("integration_error", &self.integration_error())?;
         ledger.end()
     }

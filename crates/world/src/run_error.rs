@@ -109,7 +109,7 @@ pub enum RunError {
         RoundedPlace(*time),
         quoted(bodies),
         Rounded(*step),
-        under(laws)
+        under(force_laws)
     )]
     StepCollapsed {
         /// Time of the error [s].
@@ -119,7 +119,7 @@ pub enum RunError {
         /// Names of the bodies that share the step.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
-        laws: Vec<String>,
+        force_laws: Vec<String>,
     },
     /// Errors of an integrator with fixed steps have grown until bodies were fast beyond all measure.
     #[error(
@@ -142,7 +142,7 @@ pub enum RunError {
         "at {} s the forces of {} on {} vary over {} m, too short a length for the rounding of the coordinates or \
          the gap of bodies in contact at this tolerance; keep the bodies farther apart, or nearer the origin",
         RoundedPlace(*time),
-        quoted(laws),
+        quoted(force_laws),
         quoted(bodies),
         Rounded(*length)
     )]
@@ -154,7 +154,7 @@ pub enum RunError {
         /// Names of the two bodies that are so near each other, or of all that share the step.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
-        laws: Vec<String>,
+        force_laws: Vec<String>,
     },
     /// Steps have become so short that the planned time would take hopelessly many, and no events happen meanwhile. The
     /// state at that time is sound: an advance over a shorter duration may go on, unless a longer one is planned.
@@ -163,7 +163,7 @@ pub enum RunError {
         RoundedPlace(*time),
         quoted(bodies),
         Rounded(*step),
-        under(laws),
+        under(force_laws),
         Rounded(*duration),
         Rounded(duration / step)
     )]
@@ -177,7 +177,7 @@ pub enum RunError {
         /// Names of the bodies that share the steps.
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
-        laws: Vec<String>,
+        force_laws: Vec<String>,
     },
     /// A body turns so often in the planned time that following it is hopeless: bodies are near that it may hit, or
     /// ties and forces act on it. The state at that time is sound: an advance over a shorter duration may go on, unless
@@ -337,21 +337,21 @@ impl RunError {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::Contacts { time, bodies, between, problem, source }
             }
-            AdvanceError::StepCollapsed { time, step, bodies, laws } => {
+            AdvanceError::StepCollapsed { time, step, bodies, force_laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
-                Self::StepCollapsed { time, step, bodies, laws }
+                Self::StepCollapsed { time, step, bodies, force_laws }
             }
             AdvanceError::RanAway { time, speed, bodies } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::RanAway { time, speed, bodies }
             }
-            AdvanceError::Unresolved { time, length, bodies, laws } => {
+            AdvanceError::Unresolved { time, length, bodies, force_laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
-                Self::Unresolved { time, length, bodies, laws }
+                Self::Unresolved { time, length, bodies, force_laws }
             }
-            AdvanceError::Crawls { time, step, duration, bodies, laws } => {
+            AdvanceError::Crawls { time, step, duration, bodies, force_laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
-                Self::Crawls { time, step, duration, bodies, laws }
+                Self::Crawls { time, step, duration, bodies, force_laws }
             }
             AdvanceError::TooFast { time, body, angular_velocity, duration } => {
                 Self::TooFast { time, body: name(body), angular_velocity, duration }
@@ -373,8 +373,8 @@ impl RunError {
 }
 
 /// The force laws of an error, as the end of a clause.
-fn under(laws: &[String]) -> String {
-    if laws.is_empty() { String::new() } else { format!(" under the forces of {}", quoted(laws)) }
+fn under(force_laws: &[String]) -> String {
+    if force_laws.is_empty() { String::new() } else { format!(" under the forces of {}", quoted(force_laws)) }
 }
 
 /// Names the two bodies of the row that a message has named by its index.
@@ -396,7 +396,7 @@ mod tests {
     /// The message of a collapsed step of a number of bodies.
     fn message(bodies: usize) -> String {
         let bodies = (0..bodies).map(|index| format!("disc {index}")).collect();
-        RunError::StepCollapsed { time: 1.5, step: 1e-15, bodies, laws: Vec::new() }.to_string()
+        RunError::StepCollapsed { time: 1.5, step: 1e-15, bodies, force_laws: Vec::new() }.to_string()
     }
 
     #[test]

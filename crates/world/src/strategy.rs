@@ -136,9 +136,9 @@ impl Strategy {
 /// Force laws and velocities, which the caller changes.
 impl Strategy {
     /// Force laws in the order of their indices, those that were removed included.
-    pub(crate) fn laws(&self) -> &[Arc<dyn ForceLaw>] {
+    pub(crate) fn force_laws(&self) -> &[Arc<dyn ForceLaw>] {
         match self {
-            Self::Events(system) => system.laws(),
+            Self::Events(system) => system.force_laws(),
         }
     }
 
@@ -157,20 +157,24 @@ impl Strategy {
     }
 
     /// Adds a force law that acts from a time on.
-    pub(crate) fn add_law(
+    pub(crate) fn add_force_law(
         &mut self,
         time: Time,
         law: Arc<dyn ForceLaw>,
     ) -> Result<Option<Handled>, AdvanceError> {
         match self {
-            Self::Events(system) => system.add_law(time, law),
+            Self::Events(system) => system.add_force_law(time, law),
         }
     }
 
     /// Removes the force law at an index from a time on.
-    pub(crate) fn remove_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
+    pub(crate) fn remove_force_law(
+        &mut self,
+        time: Time,
+        law: usize,
+    ) -> Result<Option<Handled>, AdvanceError> {
         match self {
-            Self::Events(system) => system.remove_law(time, law),
+            Self::Events(system) => system.remove_force_law(time, law),
         }
     }
 
@@ -257,9 +261,9 @@ pub(crate) enum SavedStrategy {
 #[cfg(feature = "save")]
 impl SavedStrategy {
     /// The system, given the force laws that it had.
-    pub(crate) fn with_laws(self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<Strategy, PartsError> {
+    pub(crate) fn with_force_laws(self, force_laws: Vec<Arc<dyn ForceLaw>>) -> Result<Strategy, PartsError> {
         match self {
-            Self::Events(saved) => saved.with_laws(laws).map(Strategy::Events),
+            Self::Events(saved) => saved.with_force_laws(force_laws).map(Strategy::Events),
         }
     }
 }

@@ -227,8 +227,9 @@ impl World {
     pub(crate) fn books(&self, booked: &mut Booked, room: &mut Vec<Moving>) -> Books {
         self.strategy.write_ledger(self.now, booked);
         let works = |size: fn(f64) -> f64| {
-            let laws = booked.laws.iter().enumerate();
-            laws.filter(|(index, _)| !self.strategy.has_potential(*index))
+            let force_laws = booked.force_laws.iter().enumerate();
+            force_laws
+                .filter(|(index, _)| !self.strategy.has_potential(*index))
                 .map(|(_, &work)| size(work))
                 .sum::<f64>()
         };
@@ -253,8 +254,8 @@ impl World {
     pub fn ledger(&self) -> Ledger {
         let mut books = Booked::default();
         self.strategy.write_ledger(self.now, &mut books);
-        let laws = self.strategy.laws().iter().zip(&books.laws).enumerate();
-        let laws = laws.filter(|(index, _)| !self.strategy.has_potential(*index));
+        let force_laws = self.strategy.force_laws().iter().zip(&books.force_laws).enumerate();
+        let force_laws = force_laws.filter(|(index, _)| !self.strategy.has_potential(*index));
         Ledger {
             now: self.energy(),
             start: self.start.energy,
@@ -264,7 +265,9 @@ impl World {
             projections: books.projections,
             interventions: books.interventions,
             damping: books.damping,
-            laws: laws.map(|(_, (law, &work))| LawWork { law: law.name().to_owned(), work }).collect(),
+            force_laws: force_laws
+                .map(|(_, (law, &work))| LawWork { law: law.name().to_owned(), work })
+                .collect(),
         }
     }
 
@@ -282,8 +285,8 @@ impl World {
 
     /// The force laws that act, in the order in which they were added.
     pub fn forces(&self) -> impl Iterator<Item = &Arc<dyn ForceLaw>> {
-        let laws = self.strategy.laws().iter().enumerate();
-        laws.filter(|&(index, _)| self.strategy.is_acting(index)).map(|(_, law)| law)
+        let force_laws = self.strategy.force_laws().iter().enumerate();
+        force_laws.filter(|&(index, _)| self.strategy.is_acting(index)).map(|(_, law)| law)
     }
 
     /// The connectors, in the order in which they were added.

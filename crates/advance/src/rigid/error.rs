@@ -55,7 +55,7 @@ pub enum AdvanceError {
     },
     /// The step size of the integrator has fallen to nothing: forces grow beyond all bounds or are not numbers.
     #[error(
-        "at {} s the step of bodies {bodies:?} fell to {} s; forces on them: {laws:?}",
+        "at {} s the step of bodies {bodies:?} fell to {} s; forces on them: {force_laws:?}",
         RoundedPlace(*time),
         Rounded(*step)
     )]
@@ -67,7 +67,7 @@ pub enum AdvanceError {
         /// The bodies that share the step.
         bodies: Vec<BodyId>,
         /// Names of the force laws that act on them.
-        laws: Vec<String>,
+        force_laws: Vec<String>,
     },
     /// Steps of a method without an error estimate are too long: they have made bodies faster than anything in the
     /// scene explains.
@@ -87,7 +87,7 @@ pub enum AdvanceError {
     /// Forces vary over so short a length that rounding of positions, or the gap that contacts have, would create
     /// energy.
     #[error(
-        "at {} s the forces on bodies {bodies:?} vary over {} m, too little for their coordinates or gaps: {laws:?}",
+        "at {} s the forces on bodies {bodies:?} vary over {} m, too little for their coordinates or gaps: {force_laws:?}",
         RoundedPlace(*time),
         Rounded(*length)
     )]
@@ -99,14 +99,14 @@ pub enum AdvanceError {
         /// The two bodies at this distance from each other, or, where there are none, all that share the step.
         bodies: Vec<BodyId>,
         /// Names of the force laws that act on them.
-        laws: Vec<String>,
+        force_laws: Vec<String>,
     },
     /// Steps have become so short that the duration told to [`set_duration`](crate::rigid::RigidSystem::set_duration)
     /// would take a hopeless number of them, with no impact in between. The system is intact: with a lesser
     /// duration set, it can be advanced further.
     #[error(
         "at {} s the steps of bodies {bodies:?} are {} s long: too many of them for {duration} s; forces on them: \
-         {laws:?}",
+         {force_laws:?}",
         RoundedPlace(*time),
         Rounded(*step)
     )]
@@ -120,7 +120,7 @@ pub enum AdvanceError {
         /// The bodies that share the steps.
         bodies: Vec<BodyId>,
         /// Names of the force laws that act on them.
-        laws: Vec<String>,
+        force_laws: Vec<String>,
     },
     /// A body turns so fast that the duration told to [`set_duration`](crate::rigid::RigidSystem::set_duration) would
     /// take a hopeless number of turns, each of which has to be followed: bodies are near that it may hit, or ties and

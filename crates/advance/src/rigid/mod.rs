@@ -54,7 +54,7 @@ mod ticks;
 mod watch;
 mod zeno;
 
-pub use bodies::law::{ForceLaw, Snapshot, Wrench, Wrenches};
+pub use bodies::force_law::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use bodies::squeezed::LARGEST_MASS_RATIO;
 pub use bodies::trajectory::{FreeMotion, Trajectory};
 pub use books::counts::Counts;

@@ -1,6 +1,6 @@
 //! The parts of a system, and the checks that refuse missing bodies and numbers out of range.
 
-use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::bodies::force_law::ForceLaw;
 use crate::rigid::bodies::trajectory::FreeMotion;
 use crate::rigid::settings::RigidSettings;
 use crate::time::Time;
@@ -15,7 +15,7 @@ pub struct RigidParts {
     /// Connectors between bodies, or between a body and the background.
     pub connectors: Vec<Connector>,
     /// Force laws beyond those of free flight.
-    pub laws: Vec<Arc<dyn ForceLaw>>,
+    pub force_laws: Vec<Arc<dyn ForceLaw>>,
     /// Pairs of bodies that never collide with each other.
     pub excluded: Vec<(BodyId, BodyId)>,
 }
@@ -124,8 +124,8 @@ impl RigidParts {
         for (index, connector) in self.connectors.iter().enumerate() {
             connector.bodies().into_iter().try_for_each(|body| check("connector", index, body))?;
         }
-        for (index, law) in self.laws.iter().enumerate() {
-            check_bodies_of_law(index, law.as_ref(), count)?;
+        for (index, law) in self.force_laws.iter().enumerate() {
+            check_bodies_of_force_law(index, law.as_ref(), count)?;
         }
         for (index, &(a, b)) in self.excluded.iter().enumerate() {
             [a, b].into_iter().try_for_each(|body| check("excluded pair", index, body))?;
@@ -142,7 +142,11 @@ fn check_named(part: &'static str, index: usize, body: BodyId, count: usize) -> 
 }
 
 /// Refuses a law that names a body which is not among `count`.
-pub(crate) fn check_bodies_of_law(index: usize, law: &dyn ForceLaw, count: usize) -> Result<(), PartsError> {
+pub(crate) fn check_bodies_of_force_law(
+    index: usize,
+    law: &dyn ForceLaw,
+    count: usize,
+) -> Result<(), PartsError> {
     law.bodies().iter().try_for_each(|&body| check_named("force law", index, body, count))
 }
 
@@ -184,12 +188,12 @@ fn check_zone(&Tolerances { target_gap, accuracy, .. }: &Tolerances) -> Result<(
     keep_to(&[(POSITIVE.0, POSITIVE.1, &sizes)]).map_err(bad)
 }
 
-fn check_body(BodyPart { body, free_motion: law, state }: &BodyPart) -> Result<(), Broken> {
+fn check_body(BodyPart { body, free_motion, state }: &BodyPart) -> Result<(), Broken> {
     let sizes = [
         ("inverse mass", body.inverse_mass),
         ("inverse moment", body.inverse_moment),
-        ("linear rate", law.linear_rate),
-        ("angular rate", law.angular_rate),
+        ("linear rate", free_motion.linear_rate),
+        ("angular rate", free_motion.angular_rate),
     ];
     let numbers = [
         ("x", state.position.x),
@@ -198,8 +202,8 @@ fn check_body(BodyPart { body, free_motion: law, state }: &BodyPart) -> Result<(
         ("velocity.x", state.velocity.x),
         ("velocity.y", state.velocity.y),
         ("angular velocity", state.angular_velocity),
-        ("acceleration.x", law.acceleration.x),
-        ("acceleration.y", law.acceleration.y),
+        ("acceleration.x", free_motion.acceleration.x),
+        ("acceleration.y", free_motion.acceleration.y),
     ];
     keep_to(&[
         (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),

@@ -26,7 +26,7 @@ pub enum Remedy {
     /// Contacts that open so slowly that forces close them again within the zone become active at once.
     LowHops,
     /// Bodies with more events than forces can resolve are stopped without elasticity.
-    Storms,
+    Accumulation,
     /// In groups whose steps are very short, or that were ended at once, contacts that open ever so slowly become inactive.
     Haste,
     /// A group made anew at the time at which another was ended because a contact pulled may pull again at its start.
@@ -72,7 +72,7 @@ impl Remedy {
         Self::PassingBy,
         Self::LowBounces,
         Self::LowHops,
-        Self::Storms,
+        Self::Accumulation,
         Self::Haste,
         Self::Patience,
         Self::JammedImpulses,
@@ -103,7 +103,7 @@ impl Remedy {
             Self::PassingBy => "passing_by",
             Self::LowBounces => "low_bounces",
             Self::LowHops => "low_hops",
-            Self::Storms => "storms",
+            Self::Accumulation => "accumulation",
             Self::Haste => "haste",
             Self::Patience => "patience",
             Self::JammedImpulses => "jammed_impulses",

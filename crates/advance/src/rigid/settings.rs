@@ -37,7 +37,7 @@ pub struct RigidSettings {
     /// them, if both are taken to rest.
     pub rest_speed: f64,
     /// Time [s] in which forces produce `velocity_tol`, or move a body through half of the target zone, whichever is
-    /// longer. Bodies with more events than allowed within it are stopped without elasticity (a storm).
+    /// longer. Bodies with more events than allowed within it are stopped without elasticity (an accumulation).
     pub resolution_time: f64,
     /// Remedies that are switched off, for tests of what they are for.
     pub without: RemedySet,

@@ -4,7 +4,7 @@
 //! segment ends, sunk contacts are put back. Between events nothing is computed; an event touches only its bodies and
 //! their neighbours.
 
-use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::bodies::force_law::ForceLaw;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::counts::Counts;
 use crate::rigid::books::forces::row_forces;
@@ -15,13 +15,13 @@ use crate::rigid::due::events::establish;
 use crate::rigid::due::handling::{finish, handle, happen};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::intervention::{
-    LawChange, VelocityChange, change_laws, change_velocities, check_finite,
+    ForceLawChange, VelocityChange, change_force_laws, change_velocities, check_finite,
 };
 use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::event::work::EventWork;
 #[cfg(feature = "save")]
 use crate::rigid::parts::PartsError;
-use crate::rigid::parts::{RigidParts, check_bodies_of_law};
+use crate::rigid::parts::{RigidParts, check_bodies_of_force_law};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::RemedyCounts;
 use crate::rigid::settings::RigidSettings;
@@ -145,13 +145,13 @@ impl RigidSystem {
     #[must_use]
     #[inline]
     pub fn has_potential(&self, law: usize) -> bool {
-        self.rooms.assembly.laws().has_potential[law]
+        self.rooms.assembly.force_laws().has_potential[law]
     }
 
     /// Force laws, in the order of their indices, those that were removed included.
     #[must_use]
-    pub fn laws(&self) -> &[Arc<dyn ForceLaw>] {
-        &self.rooms.assembly.laws().all
+    pub fn force_laws(&self) -> &[Arc<dyn ForceLaw>] {
+        &self.rooms.assembly.force_laws().all
     }
 
     /// Connectors, in the order of their ids.
@@ -241,10 +241,14 @@ impl RigidSystem {
     /// # Errors
     /// A time that is not finite, or a law that names a body that is not there: nothing is done. An impact, or forces
     /// after it, that cannot be found: the system cannot go on from it.
-    pub fn add_law(&mut self, time: Time, law: Arc<dyn ForceLaw>) -> Result<Option<Handled>, AdvanceError> {
+    pub fn add_force_law(
+        &mut self,
+        time: Time,
+        law: Arc<dyn ForceLaw>,
+    ) -> Result<Option<Handled>, AdvanceError> {
         check_finite(time, &[])?;
-        check_bodies_of_law(self.laws().len(), law.as_ref(), self.body_count())?;
-        self.interrupt(time, |rooms, work| change_laws(rooms, work, &LawChange::Add(law)))
+        check_bodies_of_force_law(self.force_laws().len(), law.as_ref(), self.body_count())?;
+        self.interrupt(time, |rooms, work| change_force_laws(rooms, work, &ForceLawChange::Add(law)))
     }
 
     /// Removes the force law at an index from a time on: it keeps its index, and its work in the ledger. The loss of its
@@ -254,18 +258,18 @@ impl RigidSystem {
     /// # Errors
     /// A time that is not finite: nothing is done. An impact, or forces after it, that cannot be found: the system
     /// cannot go on from it.
-    pub fn remove_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
+    pub fn remove_force_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
         check_finite(time, &[])?;
         if !self.is_acting(law) {
             return Ok(None);
         }
-        self.interrupt(time, |rooms, work| change_laws(rooms, work, &LawChange::Remove(law)))
+        self.interrupt(time, |rooms, work| change_force_laws(rooms, work, &ForceLawChange::Remove(law)))
     }
 
     /// True if the force law at an index acts; false if it was removed or is not there.
     #[must_use]
     pub fn is_acting(&self, law: usize) -> bool {
-        self.rooms.assembly.laws().is_on(law)
+        self.rooms.assembly.force_laws().is_on(law)
     }
 
     /// Lets an event of the caller's happen at a time, or at that of the last event if that is later.
@@ -323,13 +327,13 @@ impl SavedSystem {
     ///
     /// # Errors
     /// Laws that are too many, too few, or name a body that is not there.
-    pub fn with_laws(self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<RigidSystem, PartsError> {
+    pub fn with_force_laws(self, force_laws: Vec<Arc<dyn ForceLaw>>) -> Result<RigidSystem, PartsError> {
         let mut system = RigidSystem { rooms: self.rooms };
         let count = system.body_count();
-        for (index, law) in laws.iter().enumerate() {
-            check_bodies_of_law(index, law.as_ref(), count)?;
+        for (index, law) in force_laws.iter().enumerate() {
+            check_bodies_of_force_law(index, law.as_ref(), count)?;
         }
-        system.rooms.assembly.restore_laws(laws)?;
+        system.rooms.assembly.restore_force_laws(force_laws)?;
         Ok(system)
     }
 }

@@ -110,8 +110,8 @@ fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> Rooms {
     let mut bodies = vec![BodyPart { body: floor, free_motion: FreeMotion::default(), state: below }];
     bodies.extend(placed.map(|(shape, state)| {
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
-        let law = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
-        BodyPart { body, free_motion: law, state }
+        let free_motion = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
+        BodyPart { body, free_motion, state }
     }));
     rooms_of(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
 }

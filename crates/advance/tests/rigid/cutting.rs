@@ -34,8 +34,8 @@ fn gap_of_a_swing(room: f64, until: f64) -> f64 {
     let mut disc = body(&disc(0.5), moving(DVec2::new(-1.0, 0.0), DVec2::ZERO, 0.0));
     disc.body.inverse_mass = 1.0;
     let wall = fixed(&block(1.0, 4.0), DVec2::new(room + 0.5 + 0.5, 0.0));
-    let laws: Vec<Arc<dyn ForceLaw>> = vec![Arc::new(Home([BodyId(1)]))];
-    let parts = RigidParts { bodies: vec![wall, disc], laws, ..RigidParts::default() };
+    let force_laws: Vec<Arc<dyn ForceLaw>> = vec![Arc::new(Home([BodyId(1)]))];
+    let parts = RigidParts { bodies: vec![wall, disc], force_laws, ..RigidParts::default() };
     let settings = RigidSettings {
         tolerances: Tolerances { velocity_tol: 1e-2, ..TOLERANCES },
         steps: StepControl { local_error: 1e-6, ..SETTINGS.steps },

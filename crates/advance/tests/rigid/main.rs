@@ -1,5 +1,6 @@
 //! The advance of rigid bodies, as its users see it.
 
+mod accumulation;
 mod bounces;
 mod box_of_bodies;
 mod cutting;
@@ -11,4 +12,3 @@ mod limits;
 mod no_overlap;
 mod pace;
 mod rest;
-mod storms;

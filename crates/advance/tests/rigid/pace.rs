@@ -33,7 +33,7 @@ impl ForceLaw for Hum {
 /// Advances a humming body through some 150,000 steps of a run with the given duration [s].
 fn hum(duration: f64) -> (Result<(), AdvanceError>, RigidSystem) {
     let disc = body(&disc(0.5), moving(DVec2::new(1e-3, 0.0), DVec2::ZERO, 0.0));
-    let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(Hum)], ..RigidParts::default() };
+    let parts = RigidParts { bodies: vec![disc], force_laws: vec![Arc::new(Hum)], ..RigidParts::default() };
     let mut system = RigidSystem::new(parts, SETTINGS, Time::ZERO).expect("nothing touches");
     system.set_duration(duration);
     let outcome = advance_until(&mut system, Time::from_seconds(6e4 / FREQUENCY), |_, _| ());
@@ -43,12 +43,12 @@ fn hum(duration: f64) -> (Result<(), AdvanceError>, RigidSystem) {
 #[test]
 fn steps_that_would_never_come_to_an_end_are_told() {
     let (outcome, system) = hum(1e6);
-    let Err(AdvanceError::Crawls { time, step, duration, bodies, laws }) = outcome else {
+    let Err(AdvanceError::Crawls { time, step, duration, bodies, force_laws }) = outcome else {
         panic!("{outcome:?}, {:?}", system.counts())
     };
     assert!(step > 0.01 / FREQUENCY && step < 10.0 / FREQUENCY, "{step}");
     assert!((time / step - 1e5).abs() < 1e3, "after {} steps", time / step);
-    assert_eq!((duration, bodies, laws), (1e6, vec![BodyId(0)], vec!["hum".to_owned()]));
+    assert_eq!((duration, bodies, force_laws), (1e6, vec![BodyId(0)], vec!["hum".to_owned()]));
 }
 
 #[test]

@@ -198,7 +198,7 @@ impl ImpactLaw {
 
 impl Impact {
     /// Resolves all rows together without elasticity: the bodies get the admissible motion that is nearest to their own
-    /// in the energy norm. Ends storms of events.
+    /// in the energy norm. Ends accumulations of events.
     ///
     /// # Errors
     /// Those of [`ImpactLaw::resolve`].

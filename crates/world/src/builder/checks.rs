@@ -37,7 +37,7 @@ impl WorldBuilder {
             }
             check_body(body)?;
         }
-        for (body, law) in self.bodies.iter().zip(&self.laws) {
+        for (body, law) in self.bodies.iter().zip(&self.free_motions) {
             check_flight(body, law)?;
         }
         for (index, spec) in self.connectors.iter().enumerate() {

@@ -16,18 +16,18 @@ use std::sync::Arc;
 /// not count: between the bodies they cancel, and those from outside may turn.
 pub(super) fn drift(
     bodies: &[BodySpec],
-    laws: &[FreeMotion],
+    free_motions: &[FreeMotion],
     (connectors, forces): (&[ConnectorSpec], &[Arc<dyn ForceLaw>]),
     duration: f64,
 ) -> Option<f64> {
     let is_tied = connectors.iter().any(|spec| spec.connector.bodies().contains(&BodyId::WORLD))
         || forces.iter().any(|law| law.bodies().contains(&BodyId::WORLD) || ends_in_world(law.as_ref()))
-        || laws.iter().any(FreeMotion::is_damped);
+        || free_motions.iter().any(FreeMotion::is_damped);
     if is_tied || bodies.len() < 2 {
         return None;
     }
     let (mut mass, mut momentum, mut force) = (0.0, DVec2::ZERO, DVec2::ZERO);
-    for (body, law) in bodies.iter().zip(laws) {
+    for (body, law) in bodies.iter().zip(free_motions) {
         let inertia = body.inertia.as_ref()?;
         mass += inertia.mass;
         momentum += inertia.mass * body.state.velocity;

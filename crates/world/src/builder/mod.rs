@@ -109,7 +109,7 @@ impl BodySpec {
 pub struct WorldBuilder {
     settings: WorldSettings,
     bodies: Vec<BodySpec>,
-    laws: Vec<FreeMotion>,
+    free_motions: Vec<FreeMotion>,
     /// Uniform gravity that acts on all bodies [m/s^2], beside those in `laws`.
     gravity: DVec2,
     forces: Vec<Arc<dyn ForceLaw>>,
@@ -135,7 +135,7 @@ impl WorldBuilder {
     /// Adds a body and returns its id.
     pub fn add(&mut self, body: BodySpec) -> BodyId {
         self.bodies.push(body);
-        self.laws.push(FreeMotion::default());
+        self.free_motions.push(FreeMotion::default());
         BodyId::from_index(self.bodies.len() - 1)
     }
 
@@ -153,7 +153,7 @@ impl WorldBuilder {
     /// # Panics
     /// If no such body was added.
     pub fn add_gravity(&mut self, body: BodyId, acceleration: DVec2) {
-        self.laws[body.index()].acceleration += acceleration;
+        self.free_motions[body.index()].acceleration += acceleration;
     }
 
     /// Adds damping to a body: a force of -`linear` v [N] at the centre of mass and a torque of -`angular` w [N m],
@@ -163,7 +163,7 @@ impl WorldBuilder {
     /// If no such body was added.
     pub fn add_damping(&mut self, body: BodyId, linear: f64, angular: f64) {
         if let Some(inertia) = self.bodies[body.index()].inertia {
-            let law = &mut self.laws[body.index()];
+            let law = &mut self.free_motions[body.index()];
             law.linear_rate += linear / inertia.mass;
             law.angular_rate += angular / inertia.moment;
         }
@@ -220,8 +220,9 @@ impl WorldBuilder {
     /// off: the error names the body or the connector, and the number.
     pub fn build(mut self) -> Result<World, WorldError> {
         let gravity = std::mem::take(&mut self.gravity);
-        let laws = self.laws.iter_mut().zip(&self.bodies).filter(|(_, body)| body.inertia.is_some());
-        laws.for_each(|(law, _)| law.acceleration += gravity);
+        let free_motions =
+            self.free_motions.iter_mut().zip(&self.bodies).filter(|(_, body)| body.inertia.is_some());
+        free_motions.for_each(|(free, _)| free.acceleration += gravity);
         self.check()?;
         self.stop_vanishing();
         self.align();
@@ -244,7 +245,7 @@ impl WorldBuilder {
             self.warnings.into_iter().chain(warnings.into_iter().flatten()).collect();
         let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
         let (named, mut bodies): (Vec<_>, Vec<_>) =
-            self.bodies.into_iter().zip(self.laws).map(into_part).unzip();
+            self.bodies.into_iter().zip(self.free_motions).map(into_part).unzip();
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|part| part.body.shape = pool.share(part.body.shape.clone()));
         let rules = start_rules(&self.settings, &self.excluded, &tolerances, &scales);
@@ -262,8 +263,12 @@ impl WorldBuilder {
         let energies = energy_scales(&bodies, acting, &start, (&self.settings, &tolerances));
         let monitor = InvariantMonitor::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales, tolerances);
-        let parts =
-            RigidParts { bodies, connectors: connectors.clone(), laws: self.forces, excluded: self.excluded };
+        let parts = RigidParts {
+            bodies,
+            connectors: connectors.clone(),
+            force_laws: self.forces,
+            excluded: self.excluded,
+        };
         let strategy = Strategy::events(parts, settings, now).map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
@@ -330,7 +335,7 @@ impl WorldBuilder {
         let mut scales = Scales { speed: self.settings.usual_speed.unwrap_or_default(), ..Scales::default() };
         let of_connectors = self.connectors.iter().filter_map(|spec| world_bounds(&spec.connector));
         let mut bounds = of_connectors.reduce(Aabb::union);
-        for ((body, law), wrench) in self.bodies.iter().zip(&self.laws).zip(wrenches) {
+        for ((body, law), wrench) in self.bodies.iter().zip(&self.free_motions).zip(wrenches) {
             let shape = centered(body);
             let own = shape.bounds_at(&body.state.pose());
             bounds = Some(bounds.map_or(own, |all| all.union(own)));
@@ -351,8 +356,10 @@ impl WorldBuilder {
         bounds.into_iter().for_each(|bounds| scales.set_bounds(bounds));
         self.bodies.iter().for_each(|body| scales.include_distance(largest_radius(&body.shape)));
         let ties = (&self.connectors[..], &self.forces[..]);
-        let drift =
-            self.settings.duration.and_then(|duration| drift(&self.bodies, &self.laws, ties, duration));
+        let drift = self
+            .settings
+            .duration
+            .and_then(|duration| drift(&self.bodies, &self.free_motions, ties, duration));
         if let (Some(drift), Some(largest)) = (drift, scales.largest_coordinate()) {
             // Gaps may be wider for it by no more than the tolerance.
             scales.include_distance(drift.min(self.settings.tolerance * largest));

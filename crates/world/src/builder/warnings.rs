@@ -62,7 +62,7 @@ impl WorldBuilder {
     pub(super) fn step_warning(&self) -> Option<String> {
         let settings = &self.settings;
         let step = settings.fixed_step().filter(|_| settings.integrator.has_fixed_step())?;
-        let bodies = self.bodies.iter().zip(&self.laws);
+        let bodies = self.bodies.iter().zip(&self.free_motions);
         let rates = bodies.map(|(body, law)| (&body.name, law.linear_rate.max(law.angular_rate)));
         let (name, rate) = rates.max_by(|p, q| p.1.total_cmp(&q.1))?;
         let longest = method(settings.integrator).stability_limit()? / rate;

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 /// What is saved of a world: of borrowed parts when it is written, of owned ones when it is read.
 #[derive(Serialize, Deserialize)]
 struct Content<S, B, W, M> {
-    laws: Vec<SavedLaw>,
+    force_laws: Vec<SavedLaw>,
     strategy: S,
     bodies: B,
     now: Time,
@@ -63,9 +63,9 @@ impl World {
     /// # Errors
     /// [`SaveError::OwnLaw`] if the world has, or had, a force law that is not one of this crate's.
     pub fn save(&self) -> Result<Vec<u8>, SaveError> {
-        let laws = self.strategy.laws().iter().map(|law| SavedLaw::of(law.as_ref()));
+        let force_laws = self.strategy.force_laws().iter().map(|law| SavedLaw::of(law.as_ref()));
         let content = Content {
-            laws: laws.collect::<Result<_, _>>()?,
+            force_laws: force_laws.collect::<Result<_, _>>()?,
             strategy: &self.strategy,
             bodies: &self.bodies,
             now: self.now,
@@ -95,10 +95,10 @@ impl World {
             }
             Err(error) => return Err(LoadError::Unreadable { reason: error.to_string() }),
         };
-        let laws = content.laws.into_iter().map(SavedLaw::into_law).collect();
+        let force_laws = content.force_laws.into_iter().map(SavedLaw::into_law).collect();
         let strategy = content
             .strategy
-            .with_laws(laws)
+            .with_force_laws(force_laws)
             .map_err(|error| LoadError::Unreadable { reason: error.to_string() })?;
         Ok(Self {
             connectors: strategy.connectors().to_vec(),

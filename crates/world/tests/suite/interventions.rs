@@ -134,7 +134,7 @@ fn a_motion_that_is_turned_round_goes_back() {
 }
 
 #[test]
-fn many_interventions_at_one_time_are_no_storm() {
+fn many_interventions_at_one_time_are_no_accumulation() {
     let (mut world, discs) = tower(1, 1.0);
     for _ in 0..10_000 {
         world.intervene(&[upwards(discs[0], -2.0)], &mut |_| ()).expect("it bounces");

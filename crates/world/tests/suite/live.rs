@@ -64,7 +64,7 @@ fn a_force_lifts_a_block_off_its_stack_and_lets_it_fall_again() {
     world.advance_to(2.0, &mut |_| ()).expect("it rises");
     let state = world.state(blocks[2]);
     assert!((state.position.y - 4.5).abs() < 1e-8 && (state.velocity.y - 4.0).abs() < 1e-9, "{state:?}");
-    assert!((world.ledger().laws[0].work - 28.0).abs() < 1e-7, "the force has gone 2 m");
+    assert!((world.ledger().force_laws[0].work - 28.0).abs() < 1e-7, "the force has gone 2 m");
 
     world.remove_force(lift, &mut |_| ()).expect("it can be let go");
     assert_eq!(world.forces().count(), 0);
@@ -77,7 +77,7 @@ fn a_force_lifts_a_block_off_its_stack_and_lets_it_fall_again() {
     world.advance_to(10.0, &mut |_| ()).expect("it falls and rests");
     let ledger = world.ledger();
     assert!((world.state(blocks[2]).position.y - 2.5).abs() < 1e-6);
-    assert!((ledger.laws[0].work - 28.0).abs() < 1e-7, "work that was done stays in the books");
+    assert!((ledger.force_laws[0].work - 28.0).abs() < 1e-7, "work that was done stays in the books");
     assert!(ledger.integration_error().abs() < 1e-7, "{ledger:?}");
 }
 

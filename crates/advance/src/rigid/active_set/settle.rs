@@ -58,9 +58,9 @@ pub(crate) fn settle(
     settling.candidates.clear();
     let is_start = region.cause() == Cause::Start;
     settling.is_start = is_start;
-    let rest = match (is_start, region.in_storm()) {
+    let rest = match (is_start, region.is_accumulating()) {
         (true, _) => view.assembly.start_rest(),
-        (false, true) => view.assembly.storm_rest(),
+        (false, true) => view.assembly.accumulation_rest(),
         (false, false) => view.assembly.rest_speed(),
     };
     let share = if region.is_hasty() { NEGLIGIBLE } else { 1.0 };
@@ -270,9 +270,9 @@ fn accelerate_region(
     for &body in region.bodies() {
         stage.place(body, assembly.trajectory(body).moving_at(time));
     }
-    assembly.laws().list(region.bodies(), &mut settling.laws);
+    assembly.force_laws().list(region.bodies(), &mut settling.force_laws);
     let physics = physics(assembly, connectors);
-    let of_region = (region.bodies(), settling.laws.as_slice());
+    let of_region = (region.bodies(), settling.force_laws.as_slice());
     stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
 }
 
@@ -371,9 +371,10 @@ mod tests {
         };
         let mover = |shape: Shape, y: f64, acceleration: f64| {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 3.0, elasticity: 0.0 };
-            let law = FreeMotion { acceleration: DVec2::new(0.0, acceleration), ..FreeMotion::default() };
+            let free_motion =
+                FreeMotion { acceleration: DVec2::new(0.0, acceleration), ..FreeMotion::default() };
             let state = BodyState { position: DVec2::new(0.0, y), ..BodyState::default() };
-            BodyPart { body, free_motion: law, state }
+            BodyPart { body, free_motion, state }
         };
         let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
         let disc = mover(shape(Shape::disc(0.1)), -0.1 - gap, push);
@@ -416,9 +417,8 @@ mod tests {
             let state = at(side * apart, -1e-14 * side);
             BodyPart { body: body(Shape::block(1.0, 8.0), 0.0), free_motion: FreeMotion::default(), state }
         };
-        let law = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
-        let block =
-            BodyPart { body: body(Shape::block(1.0, 1.0), 1.0), free_motion: law, state: at(0.0, 0.0) };
+        let free_motion = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
+        let block = BodyPart { body: body(Shape::block(1.0, 1.0), 1.0), free_motion, state: at(0.0, 0.0) };
         let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
         let rooms = rooms_of(parts, FINE, Time::ZERO);
         assert!(group_of(&rooms.assembly, &rooms.groups, BodyId(2)).is_none(), "nothing holds it");

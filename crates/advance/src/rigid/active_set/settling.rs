@@ -63,7 +63,7 @@ pub(crate) struct Settling {
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) touches: Vec<Touch>,
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) laws: Vec<usize>,
+    pub(super) force_laws: Vec<usize>,
     /// Loads of the region's bodies [N].
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) gross: Vec<f64>,
@@ -103,7 +103,7 @@ impl Default for Settling {
             guess: WarmStart::new(),
             active: Vec::new(),
             touches: Vec::new(),
-            laws: Vec::new(),
+            force_laws: Vec::new(),
             gross: Vec::new(),
             pushed: Vec::new(),
         }

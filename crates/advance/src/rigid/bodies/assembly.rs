@@ -1,7 +1,7 @@
 //! All bodies at the present time: their trajectories, the laws that act on them, the thresholds by which they are
 //! judged, and every elementary query about one or two of them. It knows no contact.
 
-use crate::rigid::bodies::laws::Laws;
+use crate::rigid::bodies::force_laws::ForceLaws;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::RigidSettings;
@@ -33,7 +33,7 @@ pub(crate) struct Assembly {
     pub(super) remedies: Remedies,
     /// True for bodies that cannot move.
     pub(super) is_fixed: Vec<bool>,
-    pub(super) laws: Laws,
+    pub(super) force_laws: ForceLaws,
     /// True if some masses differ beyond the ratio that can be held together.
     pub(super) masses_are_extreme: bool,
     /// True if nothing but contacts and connectors accelerates bodies.
@@ -59,7 +59,7 @@ impl Assembly {
     /// The bodies at a time at which none is in a group.
     pub(crate) fn new(
         trajectories: Vec<Trajectory>,
-        laws: Laws,
+        force_laws: ForceLaws,
         settings: RigidSettings,
         start: Time,
     ) -> Self {
@@ -69,10 +69,10 @@ impl Assembly {
             remedies: Remedies::new(settings.without),
             is_fixed: trajectories.iter().map(|trajectory| trajectory.body().is_fixed()).collect(),
             masses_are_extreme: false,
-            is_forceless: laws.all.is_empty()
+            is_forceless: force_laws.all.is_empty()
                 && trajectories.iter().all(|trajectory| trajectory.free_motion().acceleration == DVec2::ZERO),
             trajectories,
-            laws,
+            force_laws,
             start,
             now: start,
             struck: vec![None; count],
@@ -150,8 +150,8 @@ impl Assembly {
 
     /// Sets the force laws, for tests, without listing the bodies that they act on.
     #[cfg(test)]
-    pub(crate) fn set_laws(&mut self, laws: Vec<std::sync::Arc<dyn crate::rigid::ForceLaw>>) {
-        self.laws.all = laws;
+    pub(crate) fn set_force_laws(&mut self, force_laws: Vec<std::sync::Arc<dyn crate::rigid::ForceLaw>>) {
+        self.force_laws.all = force_laws;
     }
 
     /// True for a body that can move.
@@ -272,13 +272,13 @@ impl Assembly {
 
     /// The laws.
     #[inline]
-    pub(crate) fn laws(&self) -> &Laws {
-        &self.laws
+    pub(crate) fn force_laws(&self) -> &ForceLaws {
+        &self.force_laws
     }
 
     /// The laws, to add or remove some: groups that have taken over the old ones must have been cut.
-    pub(crate) fn laws_mut(&mut self) -> &mut Laws {
-        &mut self.laws
+    pub(crate) fn force_laws_mut(&mut self) -> &mut ForceLaws {
+        &mut self.force_laws
     }
 
     /// The body that leads each body's group, if it is in one.

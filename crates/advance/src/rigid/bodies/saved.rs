@@ -1,7 +1,7 @@
 //! Bodies and laws that were saved: what their data do not tell is put back.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::law::ForceLaw;
+use crate::rigid::bodies::force_law::ForceLaw;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::parts::PartsError;
 use halfgap_geometry::ShapePool;
@@ -21,12 +21,15 @@ impl Assembly {
     ///
     /// # Errors
     /// [`PartsError::OtherLaws`].
-    pub(crate) fn restore_laws(&mut self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<(), PartsError> {
-        let (given, count) = (laws.len(), self.laws.count());
+    pub(crate) fn restore_force_laws(
+        &mut self,
+        force_laws: Vec<Arc<dyn ForceLaw>>,
+    ) -> Result<(), PartsError> {
+        let (given, count) = (force_laws.len(), self.force_laws.count());
         if given != count {
             return Err(PartsError::OtherLaws { given, count });
         }
-        self.laws.all = laws;
+        self.force_laws.all = force_laws;
         Ok(())
     }
 }

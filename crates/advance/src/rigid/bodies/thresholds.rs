@@ -25,10 +25,10 @@ impl Assembly {
         if record.motion.lateral_velocity.abs() <= rest { rest } else { self.rest_speed() }
     }
 
-    /// Rate [m/s] up to which a row is at rest in a storm. Contacts that are pressed, but of which rounding lets now
-    /// the one, now the other open, would go on for ever; at this rate none leaves the target zone before the storm is
+    /// Rate [m/s] up to which a row is at rest in an accumulation. Contacts that are pressed, but of which rounding lets now
+    /// the one, now the other open, would go on for ever; at this rate none leaves the target zone before the accumulation is
     /// over.
-    pub(crate) fn storm_rest(&self) -> f64 {
+    pub(crate) fn accumulation_rest(&self) -> f64 {
         let Tolerances { accuracy, velocity_tol, .. } = self.settings.tolerances;
         let slow = (NEGLIGIBLE * accuracy / self.settings.resolution_time).min(LARGE * velocity_tol);
         slow.max(self.rest_speed())

@@ -32,10 +32,10 @@ impl Books {
 
 impl Books {
     /// Empty books of a system with so many bodies in flight and so many force laws.
-    pub(crate) fn new(movable: usize, laws: usize) -> Self {
+    pub(crate) fn new(movable: usize, force_laws: usize) -> Self {
         Self {
             counts: Counts { segments: movable as u64, ..Counts::default() },
-            ledger: Ledger { laws: vec![0.0; laws], ..Ledger::default() },
+            ledger: Ledger { force_laws: vec![0.0; force_laws], ..Ledger::default() },
             told: Told::default(),
         }
     }
@@ -107,9 +107,9 @@ impl Books {
         self.counts.contact_solves += solves;
     }
 
-    /// Counts a storm that is ended.
-    pub(crate) fn note_storm(&mut self) {
-        self.counts.storms += 1;
+    /// Counts an accumulation that is ended.
+    pub(crate) fn note_accumulation(&mut self) {
+        self.counts.accumulations += 1;
     }
 
     /// Books a change of energy [J] by a projection.
@@ -123,8 +123,8 @@ impl Books {
     }
 
     /// Opens an account for the work of a law that was added.
-    pub(crate) fn add_law(&mut self) {
-        self.ledger.laws.push(0.0);
+    pub(crate) fn add_force_law(&mut self) {
+        self.ledger.force_laws.push(0.0);
     }
 
     /// Books a change of energy [J] by the caller.

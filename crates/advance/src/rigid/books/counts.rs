@@ -16,8 +16,8 @@ pub struct Counts {
     pub contact_solves: u64,
     /// Evaluations of forces by the integrator.
     pub evaluations: u64,
-    /// Storms of impacts that were ended without elasticity.
-    pub storms: u64,
+    /// Accumulations of impacts that were ended without elasticity.
+    pub accumulations: u64,
     /// Smallest gap [m] seen, negative for overlap; `None` if none was measured.
     pub smallest_gap: Option<f64>,
     /// Largest error of a connector's gap [m] seen; `None` if none was measured.

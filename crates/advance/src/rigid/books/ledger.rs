@@ -8,7 +8,7 @@ use crate::rigid::group::state::Work;
 pub struct Ledger {
     /// Impacts with elasticity.
     pub impacts: f64,
-    /// Slow closing contacts that were brought to rest, and storms of impacts that were ended without elasticity.
+    /// Slow closing contacts that were brought to rest, and accumulations of impacts that were ended without elasticity.
     pub captures: f64,
     /// Projections onto active rows.
     pub projections: f64,
@@ -17,13 +17,13 @@ pub struct Ledger {
     /// Work of damping.
     pub damping: f64,
     /// Work of each force law that has no potential, in the order of [`RigidSystem::laws`]; 0 for the others.
-    pub laws: Vec<f64>,
+    pub force_laws: Vec<f64>,
 }
 
 impl Ledger {
     pub(crate) fn book(&mut self, work: Work, value: f64) {
         match work {
-            Work::Law(law) => self.laws[law] += value,
+            Work::Law(law) => self.force_laws[law] += value,
             Work::Damping => self.damping += value,
         }
     }

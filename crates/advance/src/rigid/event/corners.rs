@@ -71,7 +71,7 @@ pub(crate) fn is_left_alone(
     let trajectory = assembly.trajectory(body);
     is_still
         && only_rows
-        && assembly.laws().of(body).is_empty()
+        && assembly.force_laws().of(body).is_empty()
         && trajectory.free_motion().acceleration == DVec2::ZERO
 }
 

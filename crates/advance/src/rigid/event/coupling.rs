@@ -56,8 +56,8 @@ pub(crate) fn couple(
         coupling.join(row.bodies.iter().filter_map(|&body| region.place(body)));
     }
     for &body in region.bodies() {
-        for &law in assembly.laws().of(body) {
-            let named = assembly.laws().all[law].bodies();
+        for &law in assembly.force_laws().of(body) {
+            let named = assembly.force_laws().all[law].bodies();
             coupling.join(named.iter().filter_map(|&body| region.place(body)));
         }
     }

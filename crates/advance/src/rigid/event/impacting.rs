@@ -14,8 +14,8 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::remedies::Remedy;
+use crate::rigid::zeno::accumulation::note_events;
 use crate::rigid::zeno::pace::forget_paces;
-use crate::rigid::zeno::storms::note_events;
 
 pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     let fired = work.region.cause().fired();
@@ -36,15 +36,15 @@ pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
 /// Resolves the impact of a region whose bodies are in flight, and goes on.
 pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     // One event too many in a short time is resolved without elasticity.
-    let in_storm = {
+    let is_accumulating = {
         let of = (work.region.bodies(), work.region.records());
         note_events(&rooms.assembly, &mut rooms.zeno, &mut rooms.books, of)
     };
-    work.region.set_in_storm(in_storm && rooms.assembly.remedies().act(Remedy::Storms));
-    let is_storm = work.region.in_storm();
+    work.region.set_accumulating(is_accumulating && rooms.assembly.remedies().act(Remedy::Accumulation));
+    let is_accumulating = work.region.is_accumulating();
     let mut report = rooms.books.take_report();
     let now = rooms.assembly.now();
-    let is_lawful = !is_storm && work.region.cause() != Cause::Tick;
+    let is_lawful = !is_accumulating && work.region.cause() != Cause::Tick;
     let manner = if is_lawful { Manner::Lawful(rooms.books.counts().impacts) } else { Manner::Inelastic };
     let outcome = resolve_impact(rooms, &mut work.region, &mut work.impact, &mut report, now, manner);
     if outcome.is_ok() {
@@ -52,7 +52,7 @@ pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Adv
             &rooms.assembly,
             &mut rooms.books,
             &report,
-            if is_storm { Booking::Capture } else { Booking::BySpeed },
+            if is_accumulating { Booking::Capture } else { Booking::BySpeed },
         );
     }
     rooms.books.put_report(report);

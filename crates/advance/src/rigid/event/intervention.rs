@@ -2,7 +2,7 @@
 //! Contacts and connectors respond as to an impact.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::law::{ForceLaw, Snapshot};
+use crate::rigid::bodies::force_law::{ForceLaw, Snapshot};
 use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, interrupt};
 use crate::rigid::contacts::pairs::Pairs;
@@ -36,7 +36,7 @@ pub(crate) fn change_velocities(
 }
 
 /// A change of the force laws that act.
-pub(crate) enum LawChange {
+pub(crate) enum ForceLawChange {
     /// A law begins to act.
     Add(Arc<dyn ForceLaw>),
     /// The law at an index acts no more.
@@ -44,14 +44,14 @@ pub(crate) enum LawChange {
 }
 
 /// Adds or removes a law; what its potential adds to the energy is booked as an intervention.
-pub(crate) fn change_laws(
+pub(crate) fn change_force_laws(
     rooms: &mut Rooms,
     work: &mut EventWork,
-    change: &LawChange,
+    change: &ForceLawChange,
 ) -> Result<(), AdvanceError> {
     let law = match change {
-        LawChange::Add(law) => law.clone(),
-        LawChange::Remove(index) => rooms.assembly.laws().all[*index].clone(),
+        ForceLawChange::Add(law) => law.clone(),
+        ForceLawChange::Remove(index) => rooms.assembly.force_laws().all[*index].clone(),
     };
     restart(rooms, work, law.bodies().iter().copied(), |assembly, books| {
         let now = assembly.now();
@@ -60,14 +60,14 @@ pub(crate) fn change_laws(
         let snapshot = Snapshot::of_unwound(now.seconds(), &movings, assembly.trajectories());
         let potential = law.potential(&snapshot).unwrap_or(0.0);
         match change {
-            LawChange::Add(law) => {
+            ForceLawChange::Add(law) => {
                 let has_potential = law.potential(&snapshot).is_some();
-                assembly.laws_mut().add(law.clone(), has_potential);
-                books.add_law();
+                assembly.force_laws_mut().add(law.clone(), has_potential);
+                books.add_force_law();
                 books.book_intervention(potential);
             }
-            LawChange::Remove(index) => {
-                assembly.laws_mut().remove(*index);
+            ForceLawChange::Remove(index) => {
+                assembly.force_laws_mut().remove(*index);
                 books.book_intervention(-potential);
             }
         }
@@ -139,7 +139,7 @@ fn work_of(assembly: &Assembly, body: BodyId, before: &BodyState, change: &Veloc
     linear + change.angular_velocity * spin / inertia.inverse_moment
 }
 
-/// Forgets the past events of a region's bodies: impacts that follow are neither a storm nor bounces that have
+/// Forgets the past events of a region's bodies: impacts that follow are neither an accumulation nor bounces that have
 /// become low.
 fn forget_past(pairs: &mut Pairs, zeno: &mut Zeno, work: &EventWork) {
     for &body in work.region.bodies() {

@@ -18,7 +18,7 @@ use crate::rigid::remedies::Remedy;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::watch::extending::extend_watched;
 use crate::rigid::watch::releases::look_for_release;
-use crate::rigid::zeno::pace::{names_of_laws, note_pace};
+use crate::rigid::zeno::pace::{names_of_force_laws, note_pace};
 use crate::rigid::zeno::repeats::has_pulled;
 use halfgap_collision::BodyId;
 
@@ -173,13 +173,13 @@ fn fly_along(assembly: &mut Assembly, group: &Group) {
 
 fn step_error(assembly: &Assembly, group: &Group, failure: StepFailure) -> AdvanceError {
     let (time, bodies) = (group.start().seconds(), group.bodies().to_vec());
-    let laws = names_of_laws(assembly, group);
+    let force_laws = names_of_force_laws(assembly, group);
     match failure {
-        StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, laws },
+        StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, force_laws },
         StepFailure::RanAway(speed) => AdvanceError::RanAway { time, speed, bodies },
         StepFailure::Unresolved(length) => {
             let bodies = so_far_apart(assembly, group, length).map_or(bodies, Vec::from);
-            AdvanceError::Unresolved { time, length, bodies, laws }
+            AdvanceError::Unresolved { time, length, bodies, force_laws }
         }
     }
 }
@@ -191,7 +191,7 @@ fn so_far_apart(assembly: &Assembly, group: &Group, length: f64) -> Option<[Body
         Ok(place) => body_state(group.state(), group.bodies().len(), place).position,
         Err(_) => assembly.moving_at(body, group.start()).pose.position,
     };
-    let bodies = group.laws().iter().map(|&law| assembly.laws().all[law].bodies());
+    let bodies = group.force_laws().iter().map(|&law| assembly.force_laws().all[law].bodies());
     let mut pairs = bodies
         .flat_map(|bodies| bodies.iter().enumerate().map(move |(at, &body)| (body, &bodies[at + 1..])))
         .flat_map(|(body, others)| others.iter().map(move |&other| [body, other]));
@@ -210,7 +210,7 @@ pub(crate) fn is_unwatched(
     group.bodies().iter().all(|body| search.loners()[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
         && group.rows().iter().all(|row| row.bilateral && !mechanism.can_change(row))
-        && group.laws().iter().all(|&law| assembly.laws().all[law].switches() == 0)
+        && group.force_laws().iter().all(|&law| assembly.force_laws().all[law].switches() == 0)
 }
 
 /// Postpones the dense output of the group with this leader.

@@ -1,7 +1,7 @@
 //! Bodies that have sunk, where contacts carry impulses only, are put back by the least displacement.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::law::Snapshot;
+use crate::rigid::bodies::force_law::Snapshot;
 use crate::rigid::books::energy::book_damping;
 use crate::rigid::event::cutting::cut_groups;
 use crate::rigid::event::rooms::Rooms;
@@ -106,13 +106,14 @@ fn potential_of(assembly: &Assembly, groups: &mut Groups, sinking: &mut Sinking,
         let position = groups.stage().movings()[body.index()].pose.position;
         energy -= trajectory.free_motion().acceleration.dot(position) / trajectory.body().inverse_mass;
     }
-    let mut laws = sinking.take_laws();
-    assembly.laws().list(region.bodies(), &mut laws);
+    let mut force_laws = sinking.take_force_laws();
+    assembly.force_laws().list(region.bodies(), &mut force_laws);
     let now =
         Snapshot::of_unwound(assembly.now().seconds(), groups.stage().movings(), assembly.trajectories());
-    let of_laws = laws.iter().filter_map(|&law| assembly.laws().all[law].potential(&now)).sum::<f64>();
-    sinking.put_laws(laws);
-    energy + of_laws
+    let of_force_laws =
+        force_laws.iter().filter_map(|&law| assembly.force_laws().all[law].potential(&now)).sum::<f64>();
+    sinking.put_force_laws(force_laws);
+    energy + of_force_laws
 }
 
 /// Number of rounds of putting back that go all the way: gaps are not linear in the displacement, but nearly.

@@ -2,8 +2,8 @@
 
 use crate::rigid::agenda::Agenda;
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::law::Snapshot;
-use crate::rigid::bodies::laws::Laws;
+use crate::rigid::bodies::force_law::Snapshot;
+use crate::rigid::bodies::force_laws::ForceLaws;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::all::Books;
 use crate::rigid::connectors::store::Connectors;
@@ -49,17 +49,17 @@ pub(crate) struct Rooms {
 impl Rooms {
     /// Makes the rooms of the given parts, with all bodies in flight and nothing predicted.
     pub(crate) fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Self {
-        let RigidParts { bodies, connectors, laws, excluded } = parts;
+        let RigidParts { bodies, connectors, force_laws, excluded } = parts;
         let trajectory =
-            |BodyPart { body, free_motion: law, state }| Trajectory::new(body, law, state, start);
+            |BodyPart { body, free_motion, state }| Trajectory::new(body, free_motion, state, start);
         let trajectories: Vec<Trajectory> = bodies.into_iter().map(trajectory).collect();
         let movings: Vec<Moving> =
             trajectories.iter().map(|trajectory| trajectory.moving_at(start)).collect();
         let snapshot = Snapshot::new(start.seconds(), &movings);
         let count = trajectories.len();
         let movable = trajectories.iter().filter(|trajectory| !trajectory.body().is_fixed()).count();
-        let books = Books::new(movable, laws.len());
-        let laws = Laws::new(laws, count, &snapshot);
+        let books = Books::new(movable, force_laws.len());
+        let force_laws = ForceLaws::new(force_laws, count, &snapshot);
         let connectors = Connectors::new(connectors, count);
         Self {
             books,
@@ -73,7 +73,7 @@ impl Rooms {
             members: Members::default(),
             coupling: Coupling::default(),
             work: None,
-            assembly: Assembly::new(trajectories, laws, settings, start),
+            assembly: Assembly::new(trajectories, force_laws, settings, start),
         }
     }
 
@@ -100,7 +100,7 @@ pub(crate) fn with_work<T>(
     work.region.set_cause(cause);
     let outcome = act(rooms, &mut work);
     work.region.set_cause(Cause::Other);
-    work.region.set_in_storm(false);
+    work.region.set_accumulating(false);
     (work.repeats, work.fired_open) = (0, false);
     rooms.work = Some(work);
     outcome

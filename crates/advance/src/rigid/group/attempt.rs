@@ -151,7 +151,7 @@ impl Dynamics<'_> {
         self.group.kept.note_accepted(step);
         self.group.kept.is_led = is_led;
         // Force laws may change elsewhere in a way that nothing here foretells.
-        let is_steady = self.group.laws.is_empty() && TINY * self.growth_by_forces() >= 1.0;
+        let is_steady = self.group.force_laws.is_empty() && TINY * self.growth_by_forces() >= 1.0;
         self.group.steady_step = is_steady.then_some(step);
         let accepted = Accepted { length: step, error };
         // A step that was shortened because of a bifurcation point tells nothing about those after it.
@@ -249,7 +249,7 @@ impl Dynamics<'_> {
         let of_forces = if is_smooth { STEADY_GROWTH } else { self.growth_by_forces() };
         // On a body that is held still a force law may change much faster than along the last step, unseen by errors,
         // unless the laws tell a length over which they vary.
-        let is_blind = !self.group.laws.is_empty()
+        let is_blind = !self.group.force_laws.is_empty()
             && self.group.force_length.is_infinite()
             && self.any_rests(&self.group.end_state);
         if is_blind { of_forces.min(STEADY_GROWTH) } else { of_forces }

@@ -191,11 +191,11 @@ impl Dynamics<'_> {
         let (position_rates, rest) = rates.split_at_mut(3 * bodies);
         let (velocity_rates, powers) = rest.split_at_mut(3 * bodies);
         let time = self.start.seconds() + offset;
-        let of_group = (self.group.bodies.as_slice(), self.group.laws.as_slice());
+        let of_group = (self.group.bodies.as_slice(), self.group.force_laws.as_slice());
         self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
         if self.stage.asks_free_acceleration {
             self.stage.note_free_acceleration(self.physics.mechanism.trajectories, &self.group.bodies);
-            self.stage.note_force_length(&self.physics, &self.group.laws, time);
+            self.stage.note_force_length(&self.physics, &self.group.force_laws, time);
         }
         if !self.group.rows.is_empty() {
             constrain(self);

@@ -79,13 +79,13 @@ impl Dynamics<'_> {
             let pull = self.physics.mechanism.trajectories[body.index()].free_motion().acceleration;
             total -= self.mass(body) * pull.dot(body_state(state, count, place).position);
         }
-        if self.group.laws.is_empty() {
+        if self.group.force_laws.is_empty() {
             return Energy { total, kinetic };
         }
         self.stage.load(&self.group.bodies, state);
         let now = self.physics.snapshot(self.start.seconds(), &self.stage.movings);
-        let laws = self.group.laws.iter().map(|&law| &self.physics.laws[law]);
-        total += laws.filter_map(|law| law.potential(&now)).sum::<f64>();
+        let force_laws = self.group.force_laws.iter().map(|&law| &self.physics.force_laws[law]);
+        total += force_laws.filter_map(|law| law.potential(&now)).sum::<f64>();
         Energy { total, kinetic }
     }
 

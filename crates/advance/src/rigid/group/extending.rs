@@ -111,7 +111,8 @@ mod tests {
     fn turning_disc_on_rods(ends: &[DVec2], spin: f64, angular_rate: f64) -> Rooms {
         let disc = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape: disc, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
-        let law = FreeMotion { acceleration: DVec2::new(0.0, -10.0), angular_rate, ..FreeMotion::default() };
+        let free_motion =
+            FreeMotion { acceleration: DVec2::new(0.0, -10.0), angular_rate, ..FreeMotion::default() };
         let (position, velocity) = (DVec2::new(1.0, 0.0), DVec2::new(0.0, 2.0));
         let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
         let b = Anchor { body: BodyId(0), point: DVec2::ZERO };
@@ -120,7 +121,7 @@ mod tests {
             let rod = ConnectorKind::Rod { a, b, length: point.distance(position) };
             Connector::new(rod, 0.0).expect("a fine rod")
         });
-        let (bodies, connectors) = (vec![BodyPart { body, free_motion: law, state }], rods.collect());
+        let (bodies, connectors) = (vec![BodyPart { body, free_motion, state }], rods.collect());
         let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         rooms_of(parts, FINE, Time::ZERO)
     }

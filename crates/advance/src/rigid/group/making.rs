@@ -80,10 +80,14 @@ impl Group {
     /// Lists the laws that act on its bodies, and the works that are integrated with it: those of laws without potential
     /// in their order, then that of damping.
     pub(crate) fn list_laws(&mut self, assembly: &Assembly) {
-        assembly.laws().list(&self.bodies, &mut self.laws);
+        assembly.force_laws().list(&self.bodies, &mut self.force_laws);
         self.works.clear();
-        let works =
-            self.laws.iter().copied().filter(|&law| !assembly.laws().has_potential[law]).map(Work::Law);
+        let works = self
+            .force_laws
+            .iter()
+            .copied()
+            .filter(|&law| !assembly.force_laws().has_potential[law])
+            .map(Work::Law);
         self.works.extend(works);
         if self.bodies.iter().any(|&body| assembly.trajectory(body).free_motion().is_damped()) {
             self.works.push(Work::Damping);

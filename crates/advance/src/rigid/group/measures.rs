@@ -39,13 +39,13 @@ impl Dynamics<'_> {
     /// Free bodies do so where a law names one body, and depends on its place; forces between bodies act from afar, and
     /// errors tell of them. A motion that all bodies share does not count where the laws act between them alone.
     pub(super) fn longest_lawful_step(&self) -> f64 {
-        let Group { bodies, laws, rows, state, force_length, field_length, .. } = &*self.group;
+        let Group { bodies, force_laws, rows, state, force_length, field_length, .. } = &*self.group;
         let is_free = rows.iter().all(|row| row.bilateral);
         let way = if is_free { *field_length } else { WAY_OF_A_STEP * force_length };
         if way.is_infinite() {
             return f64::INFINITY;
         }
-        let mut named = laws.iter().flat_map(|&law| self.physics.laws[law].bodies());
+        let mut named = force_laws.iter().flat_map(|&law| self.physics.force_laws[law].bodies());
         let is_between = field_length.is_infinite() && named.all(|body| bodies.binary_search(body).is_ok());
         let common = if is_between {
             let velocities = (0..bodies.len()).map(|place| body_state(state, bodies.len(), place).velocity);

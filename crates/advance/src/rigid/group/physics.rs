@@ -1,7 +1,7 @@
 //! The parts of a system from which the motion of groups is computed.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::bodies::law::{ForceLaw, Snapshot};
+use crate::rigid::bodies::force_law::{ForceLaw, Snapshot};
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::Mechanism;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Physics<'a> {
     pub(crate) mechanism: Mechanism<'a>,
-    pub(crate) laws: &'a [Arc<dyn ForceLaw>],
+    pub(crate) force_laws: &'a [Arc<dyn ForceLaw>],
     pub(crate) extra: Option<ExtraAcceleration>,
     pub(crate) steps: &'a StepControl,
     pub(crate) remedies: &'a Remedies,
@@ -27,12 +27,12 @@ impl<'a> Physics<'a> {
     pub(crate) fn of(
         trajectories: &'a [Trajectory],
         connectors: &'a [Connector],
-        laws: &'a [Arc<dyn ForceLaw>],
+        force_laws: &'a [Arc<dyn ForceLaw>],
         (settings, remedies): (&'a RigidSettings, &'a Remedies),
     ) -> Self {
         let mechanism = Mechanism { trajectories, connectors, tolerances: &settings.tolerances };
         let RigidSettings { extra, ref steps, projection: projects, .. } = *settings;
-        Self { mechanism, laws, extra, steps, remedies, projects }
+        Self { mechanism, force_laws, extra, steps, remedies, projects }
     }
 
     /// What the laws see of bodies that move like this at a time [s].
@@ -46,7 +46,7 @@ pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) ->
     Physics::of(
         assembly.trajectories(),
         connectors.all(),
-        &assembly.laws().all,
+        &assembly.force_laws().all,
         (assembly.settings(), assembly.remedies()),
     )
 }

@@ -66,8 +66,8 @@ impl Group {
 
     /// Force laws that act on its bodies, ascending.
     #[inline]
-    pub(crate) fn laws(&self) -> &[usize] {
-        &self.laws
+    pub(crate) fn force_laws(&self) -> &[usize] {
+        &self.force_laws
     }
 
     /// The least gap [m] of an active contact within the segment, if there is one and its gap was evaluated there.

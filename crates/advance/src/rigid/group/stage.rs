@@ -1,6 +1,6 @@
 //! Buffers for the evaluation of one moment, one set for the whole system.
 
-use crate::rigid::bodies::law::{Wrench, Wrenches};
+use crate::rigid::bodies::force_law::{Wrench, Wrenches};
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::contacts::rows::{ActiveRow, RowMoment};
 use crate::rigid::group::physics::Physics;
@@ -209,7 +209,7 @@ impl Stage {
     pub(crate) fn accelerate(
         &mut self,
         physics: &Physics<'_>,
-        (bodies, laws): (&[BodyId], &[usize]),
+        (bodies, force_laws): (&[BodyId], &[usize]),
         time: f64,
         works: &[Work],
         powers: &mut [f64],
@@ -218,11 +218,11 @@ impl Stage {
             self.wrenches[body.index()] = Wrench::default();
         }
         let mut next = 0;
-        for &law in laws {
+        for &law in force_laws {
             // Works are in the order of their laws.
             let does_work = works.get(next) == Some(&Work::Law(law));
             let power = does_work.then(|| &mut powers[next]);
-            self.add_law(physics, law, time, power);
+            self.add_force_law(physics, law, time, power);
             next += usize::from(does_work);
         }
         let damping = works.iter().position(|&work| work == Work::Damping);
@@ -230,15 +230,15 @@ impl Stage {
         self.accelerations.clear();
         for &body in bodies {
             let trajectory = &physics.mechanism.trajectories[body.index()];
-            let (law, inertia) = (trajectory.free_motion(), trajectory.body());
+            let (free, inertia) = (trajectory.free_motion(), trajectory.body());
             let (moving, wrench) = (&self.movings[body.index()], &self.wrenches[body.index()]);
             let (v, w) = (moving.velocity, moving.angular_velocity);
-            let linear = law.acceleration - v * law.linear_rate + wrench.force * inertia.inverse_mass;
-            let angular = wrench.torque * inertia.inverse_moment - law.angular_rate * w;
+            let linear = free.acceleration - v * free.linear_rate + wrench.force * inertia.inverse_mass;
+            let angular = wrench.torque * inertia.inverse_moment - free.angular_rate * w;
             self.accelerations.push([linear.x, linear.y, angular]);
-            if damping.is_some() && law.is_damped() {
-                damped -= law.linear_rate * v.length_squared() / inertia.inverse_mass
-                    + law.angular_rate * w * w / inertia.inverse_moment;
+            if damping.is_some() && free.is_damped() {
+                damped -= free.linear_rate * v.length_squared() / inertia.inverse_mass
+                    + free.angular_rate * w * w / inertia.inverse_moment;
             }
         }
         if let Some(place) = damping {
@@ -281,10 +281,10 @@ impl Stage {
     }
 
     /// Notes the least length over which the forces of some laws vary.
-    pub(crate) fn note_force_length(&mut self, physics: &Physics<'_>, laws: &[usize], time: f64) {
+    pub(crate) fn note_force_length(&mut self, physics: &Physics<'_>, force_laws: &[usize], time: f64) {
         let now = physics.snapshot(time, &self.movings);
         (self.force_length, self.field_length) = (f64::INFINITY, f64::INFINITY);
-        for law in laws.iter().map(|&law| &physics.laws[law]) {
+        for law in force_laws.iter().map(|&law| &physics.force_laws[law]) {
             let Some(length) = law.length(&now) else { continue };
             self.force_length = self.force_length.min(length);
             if law.bodies().len() == 1 {
@@ -305,9 +305,9 @@ impl Stage {
         }
     }
 
-    fn add_law(&mut self, physics: &Physics<'_>, law: usize, time: f64, power: Option<&mut f64>) {
+    fn add_force_law(&mut self, physics: &Physics<'_>, law: usize, time: f64, power: Option<&mut f64>) {
         let now = physics.snapshot(time, &self.movings);
-        let law = &physics.laws[law];
+        let law = &physics.force_laws[law];
         let Some(power) = power else {
             law.apply(&now, &mut Wrenches::new(&mut self.wrenches));
             return;

@@ -51,7 +51,7 @@ pub(crate) struct Group {
     pub(super) idle: Vec<ActiveRow>,
     pub(super) stops: Vec<Stop>,
     /// Force laws that act on its bodies, ascending.
-    pub(super) laws: Vec<usize>,
+    pub(super) force_laws: Vec<usize>,
     pub(super) works: Vec<Work>,
     pub(super) active: ActiveRows,
     /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
@@ -151,7 +151,7 @@ impl Group {
             sides: emptied(old.sides),
             idle: emptied(old.idle),
             stops: emptied(old.stops),
-            laws: emptied(old.laws),
+            force_laws: emptied(old.force_laws),
             works: emptied(old.works),
             active: old.active,
             tree: old.tree,
@@ -244,8 +244,8 @@ impl Group {
         self.active.set_structure(&[], &self.sides);
     }
 
-    pub(crate) fn set_laws(&mut self, laws: Vec<usize>) {
-        self.laws = laws;
+    pub(crate) fn set_force_laws(&mut self, force_laws: Vec<usize>) {
+        self.force_laws = force_laws;
     }
 
     pub(crate) fn set_times(&mut self, start: Time, made: Time) {

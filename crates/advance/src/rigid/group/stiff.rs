@@ -66,12 +66,12 @@ impl Dynamics<'_> {
 
     /// The largest damping rate [1/s] of a body of the group. Estimates from steps do not show it in bodies at rest.
     fn damping_rate(&self) -> f64 {
-        let laws = self
+        let force_laws = self
             .group
             .bodies
             .iter()
             .map(|&body| self.physics.mechanism.trajectories[body.index()].free_motion());
-        laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
+        force_laws.map(|law| law.linear_rate.max(law.angular_rate)).fold(0.0, f64::max)
     }
 
     /// Raises the fastest rate of the group to its damping rate, which may not have been estimated yet.

@@ -24,7 +24,7 @@ pub(crate) struct Region {
     /// Cause of the event.
     pub(super) cause: Cause,
     /// True if the event is one too many in a short time.
-    pub(super) in_storm: bool,
+    pub(super) is_accumulating: bool,
     /// True if steps have become so short that contacts that count as resting seem to take turns.
     pub(super) is_hasty: bool,
     pub(super) fresh: Vec<Collision>,
@@ -105,8 +105,8 @@ impl Region {
     }
 
     /// Notes whether the event is one too many in a short time.
-    pub(crate) fn set_in_storm(&mut self, in_storm: bool) {
-        self.in_storm = in_storm;
+    pub(crate) fn set_accumulating(&mut self, is_accumulating: bool) {
+        self.is_accumulating = is_accumulating;
     }
 
     /// Keeps the records of which a test is true.
@@ -226,8 +226,8 @@ impl Region {
 
     /// True if the event is one too many in a short time.
     #[inline]
-    pub(crate) fn in_storm(&self) -> bool {
-        self.in_storm
+    pub(crate) fn is_accumulating(&self) -> bool {
+        self.is_accumulating
     }
 
     /// True if steps have become so short that contacts that count as resting seem to take turns.

@@ -186,10 +186,10 @@ mod tests {
     fn thrown(linear_rate: f64) -> Trajectory {
         let shape = Shape::disc(0.7).expect("a fine radius");
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
-        let law = FreeMotion { acceleration: DVec2::new(0.1, -9.81), linear_rate, angular_rate: 0.0 };
+        let free_motion = FreeMotion { acceleration: DVec2::new(0.1, -9.81), linear_rate, angular_rate: 0.0 };
         let (position, velocity) = (DVec2::new(1.0 / 3.0, 2.0), DVec2::new(-0.7, 1.1));
         let state = BodyState { position, velocity, angular_velocity: 3.0, ..BodyState::default() };
-        Trajectory::new(body, law, state, Time::from_seconds(1.1))
+        Trajectory::new(body, free_motion, state, Time::from_seconds(1.1))
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub(crate) struct Sinking {
     /// Number of collisions of sunk contacts since the last tick.
     pressed: u32,
     /// Buffer: indices of the laws of a region's bodies.
-    laws: Vec<usize>,
+    force_laws: Vec<usize>,
 }
 
 impl Sinking {
@@ -60,13 +60,13 @@ impl Sinking {
     }
 
     /// Takes out the buffer of laws.
-    pub(crate) fn take_laws(&mut self) -> Vec<usize> {
-        std::mem::take(&mut self.laws)
+    pub(crate) fn take_force_laws(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.force_laws)
     }
 
     /// Puts back the buffer of laws.
-    pub(crate) fn put_laws(&mut self, laws: Vec<usize>) {
-        self.laws = laws;
+    pub(crate) fn put_force_laws(&mut self, force_laws: Vec<usize>) {
+        self.force_laws = force_laws;
     }
 
     pub(crate) fn wait(&mut self, touch: Touch) {

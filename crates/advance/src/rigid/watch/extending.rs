@@ -37,7 +37,7 @@ fn end_before_switch(
     tools: &mut Tools<'_>,
     proposed: Option<f64>,
 ) -> Result<(), StepFailure> {
-    if dynamics.group.laws().is_empty() || !tools.stepper.method().is_adaptive() {
+    if dynamics.group.force_laws().is_empty() || !tools.stepper.method().is_adaptive() {
         return Ok(());
     }
     let mut before = dynamics.clock_ticks(ROUNDINGS);

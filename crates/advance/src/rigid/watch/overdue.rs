@@ -42,7 +42,7 @@ pub(super) fn find_overdue(
 
 #[cfg(test)]
 mod tests {
-    use crate::rigid::bodies::law::{ForceLaw, Snapshot, Wrenches};
+    use crate::rigid::bodies::force_law::{ForceLaw, Snapshot, Wrenches};
     use crate::rigid::event::life::continue_group;
     use crate::rigid::event::rooms::Rooms;
     use crate::rigid::group::groups::{group_of, put_group, with_group};
@@ -89,9 +89,9 @@ mod tests {
     fn a_contact_that_pulls_a_little_from_the_start_lets_go() {
         for late in [1e-8, 1e-6, 1e-3] {
             let mut rooms = resting_discs(&[0.0]);
-            rooms.assembly.set_laws(vec![Arc::new(Lift)]);
+            rooms.assembly.set_force_laws(vec![Arc::new(Lift)]);
             let group = stepped(rooms, |group| {
-                group.set_laws(vec![0]);
+                group.set_force_laws(vec![0]);
                 let (start, made) = (Time::from_seconds(1.0 + late), group.made());
                 group.set_times(start, made);
                 group.set_next_step(Some(1e-2));

@@ -50,7 +50,7 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
     let mut pulled = dynamics.group.lend_pulled();
     let narrowest = NARROWEST * dynamics.group.span();
     let end = earliest.limit().unwrap_or(dynamics.group.span());
-    let most = if dynamics.group.laws().is_empty() { HALVINGS } else { MOST_HALVINGS };
+    let most = if dynamics.group.force_laws().is_empty() { HALVINGS } else { MOST_HALVINGS };
     let (mut part, mut halvings) = (Part::all(end), 0);
     while earliest.is_after(part.from) {
         sample_forces(dynamics, &mut forces, part);
@@ -113,7 +113,8 @@ fn pull_at_start(dynamics: &Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
 /// stages to tell; along steps that force laws have left too long, the variation does not tell the rate.
 pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
     let group = &*dynamics.group;
-    let (rows, forces, end_forces, laws) = (group.rows(), group.forces(), group.end_forces(), group.laws());
+    let (rows, forces, end_forces, force_laws) =
+        (group.rows(), group.forces(), group.end_forces(), group.force_laws());
     let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
     let is_known =
         dynamics.group.stepping() != Stepping::Stiff && dynamics.stage.force_ranges().len() == rows.len();
@@ -122,7 +123,7 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
         let [least, largest] = if is_known { dynamics.stage.force_ranges()[index] } else { [start, end] };
         let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
         let is_firm = is_known && least > largest - least;
-        let is_slow = is_known && laws.is_empty() && start > 0.0;
+        let is_slow = is_known && force_laws.is_empty() && start > 0.0;
         let part = if is_slow { start / (SEVERAL * (largest - least)) } else { 0.0 };
         (!is_firm).then_some(part)
     };

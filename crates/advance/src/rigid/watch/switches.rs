@@ -79,7 +79,7 @@ fn stop_at(dynamics: &mut Dynamics<'_>, stop: Stop, offset: f64) -> f64 {
 fn switch_at(dynamics: &mut Dynamics<'_>, law: usize, index: usize, offset: f64) -> f64 {
     dynamics.place_at(offset);
     let now = dynamics.physics.snapshot(dynamics.start.seconds() + offset, dynamics.stage.movings());
-    dynamics.physics.laws[law].switch(index, &now)
+    dynamics.physics.force_laws[law].switch(index, &now)
 }
 
 /// Offset [s] of the first change of sign of a switching function.
@@ -100,9 +100,9 @@ pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize)
 /// next step would have to go over it, however short. Dense output reaches that far beyond its end.
 pub(crate) fn find_switch_at_end(dynamics: &mut Dynamics<'_>) -> Option<f64> {
     let mut earliest = Earliest::default();
-    for place in 0..dynamics.group.laws().len() {
-        let law = dynamics.group.laws()[place];
-        for index in 0..dynamics.physics.laws[law].switches() {
+    for place in 0..dynamics.group.force_laws().len() {
+        let law = dynamics.group.force_laws()[place];
+        for index in 0..dynamics.physics.force_laws[law].switches() {
             earliest.offer(find_change_at_end(dynamics, law, index), SegmentEnd::Switch);
         }
     }
@@ -168,7 +168,7 @@ fn in_lap(value: f64, near: f64, lap: Option<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::find_switch;
-    use crate::rigid::bodies::law::{ForceLaw, Snapshot, Wrenches};
+    use crate::rigid::bodies::force_law::{ForceLaw, Snapshot, Wrenches};
     use crate::rigid::bodies::trajectory::FreeMotion;
     use crate::rigid::group::groups::with_group;
     use crate::rigid::parts::{BodyPart, RigidParts};
@@ -215,7 +215,8 @@ mod tests {
         let disc = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
         let disc = BodyPart { body: disc, free_motion: FreeMotion::default(), state: BodyState::default() };
         let clock = Clock { rings: later.seconds() + delay, bodies: [body] };
-        let parts = RigidParts { bodies: vec![disc], laws: vec![Arc::new(clock)], ..RigidParts::default() };
+        let parts =
+            RigidParts { bodies: vec![disc], force_laws: vec![Arc::new(clock)], ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::ZERO);
         let mut group = rooms.groups.take(body).expect("the law makes a group");
         group.set_times(later, if is_first { later } else { Time::ZERO });

@@ -64,7 +64,7 @@ impl Zeno {
 pub(crate) struct Recent {
     /// Time at which counting began; `None` if it has not.
     pub(super) since: Option<Time>,
-    /// Storm load since then [-]: the sum of the loads of its events.
+    /// Load since then [-]: the sum of the loads of its events.
     pub(super) load: usize,
     /// Time of the last event, if there was any.
     pub(super) last: Option<Time>,

@@ -3,13 +3,13 @@
 //! **Invariant**: what is counted here never changes a motion by itself: an event is told that it is one too many, a caller
 //! that a run is hopeless.
 //!
-//! `memory`: past events of each body · `repeats`: events of a pair at one time · `storms`: more events than forces can
+//! `memory`: past events of each body · `repeats`: events of a pair at one time · `accumulation`: more events than forces can
 //! resolve · `pace`, `steps`: steps too short to reach the end of the run · `turns`: bodies that turn too fast to be
 //! followed.
 
+pub(super) mod accumulation;
 pub(super) mod memory;
 pub(super) mod pace;
 pub(super) mod repeats;
 pub(super) mod steps;
-pub(super) mod storms;
 pub(super) mod turns;

@@ -48,7 +48,7 @@ pub(crate) fn note_pace(assembly: &Assembly, zeno: &mut Zeno, group: &Group) {
         step,
         duration: zeno.duration,
         bodies: group.bodies().to_vec(),
-        laws: names_of_laws(assembly, group),
+        force_laws: names_of_force_laws(assembly, group),
     }));
 }
 
@@ -68,8 +68,8 @@ fn turns_without_end(assembly: &Assembly, zeno: &Zeno, group: &Group, step: f64)
 }
 
 /// Names of the laws that act on a group.
-pub(crate) fn names_of_laws(assembly: &Assembly, group: &Group) -> Vec<String> {
-    group.laws().iter().map(|&law| assembly.laws().all[law].name().to_owned()).collect()
+pub(crate) fn names_of_force_laws(assembly: &Assembly, group: &Group) -> Vec<String> {
+    group.force_laws().iter().map(|&law| assembly.force_laws().all[law].name().to_owned()).collect()
 }
 
 /// Forgets the steps of bodies that have taken part in an impact: their groups make progress.

@@ -23,13 +23,13 @@ impl Ode for Hanging<'_, '_> {
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
         let Dynamics { physics, group, stage, start } = &mut *self.0;
-        let Group { tree, bodies, laws, works, .. } = &mut **group;
+        let Group { tree, bodies, force_laws, works, .. } = &mut **group;
         stage.evaluations += 1;
         let count = tree.count();
         tree.place(state, bodies, &mut stage.movings);
         rates[..count].copy_from_slice(&state[count..2 * count]);
         let (rates, powers) = rates[count..].split_at_mut(count);
-        stage.accelerate(physics, (bodies, laws), start.seconds() + offset, works, powers);
+        stage.accelerate(physics, (bodies, force_laws), start.seconds() + offset, works, powers);
         tree.accelerate(&mut stage.accelerations);
         self.0.hold_loop_rows();
         let Group { tree, kept, .. } = &mut *self.0.group;

@@ -93,8 +93,8 @@ impl Scene {
             let shape = Shape::block(1.0, 0.4).expect("a fine block");
             let inverse_mass = body.mass.recip();
             let body = Body { shape, inverse_mass, inverse_moment: 3.0 * inverse_mass, elasticity: 0.5 };
-            let law = FreeMotion { acceleration: DVec2::new(0.3, -9.81), ..FreeMotion::default() };
-            Trajectory::new(body, law, *state, Time::ZERO)
+            let free_motion = FreeMotion { acceleration: DVec2::new(0.3, -9.81), ..FreeMotion::default() };
+            Trajectory::new(body, free_motion, *state, Time::ZERO)
         };
         let mut trajectories: Vec<_> = hung.iter().zip(&states).map(trajectory).collect();
         trajectories.reverse();
@@ -149,7 +149,7 @@ impl Scene {
         let mechanism = Mechanism { trajectories, connectors, tolerances: &TOLERANCES };
         let remedies = &Remedies::new(RemedySet::NONE);
         let physics =
-            Physics { mechanism, laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };
+            Physics { mechanism, force_laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };
         let mut stage = Stage::new(vec![Moving::BACKGROUND; count]);
         act(&mut Dynamics { physics, group, stage: &mut stage, start: Time::ZERO })
     }

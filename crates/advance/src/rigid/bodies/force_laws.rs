@@ -1,14 +1,14 @@
 //! The force laws of a system and the bodies that each acts on.
 
 use crate::rigid::bodies::by_body::ByBody;
-use crate::rigid::bodies::law::{ForceLaw, Snapshot};
+use crate::rigid::bodies::force_law::{ForceLaw, Snapshot};
 use halfgap_collision::BodyId;
 use std::sync::Arc;
 
 /// All force laws; a law is named by its place among them.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Laws {
+pub(crate) struct ForceLaws {
     #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) all: Vec<Arc<dyn ForceLaw>>,
     /// Whether each law acts; one that was removed does not.
@@ -20,7 +20,7 @@ pub(crate) struct Laws {
     body_count: usize,
 }
 
-impl Laws {
+impl ForceLaws {
     /// Lists the laws of a number of bodies; a snapshot at any time tells which laws have a potential.
     pub(crate) fn new(all: Vec<Arc<dyn ForceLaw>>, body_count: usize, snapshot: &Snapshot<'_>) -> Self {
         Self {
@@ -68,10 +68,10 @@ impl Laws {
     }
 
     /// Lists in `laws` the indices of the laws that act on any of some bodies, each once, ascending.
-    pub(crate) fn list(&self, bodies: &[BodyId], laws: &mut Vec<usize>) {
-        laws.clear();
-        laws.extend(bodies.iter().flat_map(|&body| self.of(body)));
-        laws.sort_unstable();
-        laws.dedup();
+    pub(crate) fn list(&self, bodies: &[BodyId], force_laws: &mut Vec<usize>) {
+        force_laws.clear();
+        force_laws.extend(bodies.iter().flat_map(|&body| self.of(body)));
+        force_laws.sort_unstable();
+        force_laws.dedup();
     }
 }

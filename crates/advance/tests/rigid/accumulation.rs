@@ -1,4 +1,4 @@
-//! Storms: a light disc between two heavy ones that close in on it is hit faster and faster.
+//! Accumulations: a light disc between two heavy ones that close in on it is hit faster and faster.
 
 use crate::box_of_bodies::*;
 use glam::DVec2;
@@ -36,18 +36,18 @@ fn momentum(system: &RigidSystem, time: f64) -> f64 {
     bodies(system).map(of).sum()
 }
 
-/// Lets a system run to the end without a storm: with more than `impacts` impacts, and all energy kept.
+/// Lets a system run to the end without an accumulation: with more than `impacts` impacts, and all energy kept.
 fn goes_on_elastically(system: &mut RigidSystem, impacts: u64) {
     let before = energy(system, 0.0);
     advance(system, END).expect("they part again");
     let counts = system.counts();
     assert!(counts.impacts > impacts, "{counts:?}");
-    assert_eq!(counts.storms, 0);
+    assert_eq!(counts.accumulations, 0);
     assert!((energy(system, END) / before - 1.0).abs() < 1e-12);
 }
 
 #[test]
-fn a_motion_that_forces_can_resolve_is_no_storm_however_many_impacts_there_are() {
+fn a_motion_that_forces_can_resolve_is_no_accumulation_however_many_impacts_there_are() {
     let mut system = vise(1e-10, 1e4, 0.5, SLOW);
     goes_on_elastically(&mut system, 150);
     assert_eq!(system.ledger_at(Time::from_seconds(END)).captures, 0.0);
@@ -69,7 +69,7 @@ fn ends_after(calm: usize, lighter: f64, room: f64, speed: f64) {
     assert!(before < -1.0 && after.abs() < 1e-12 * -before, "from {before} to {after} m/s");
     // After that the light disc lies on a heavy one, and the other drives both back.
     assert!(rates.len() < calm + 20, "{} impacts", rates.len());
-    assert_eq!(system.counts().storms, 1);
+    assert_eq!(system.counts().accumulations, 1);
     // The energy lost is just that of the inelastic impact: nearly m/2 times the square of its closing speed.
     let ledger = system.ledger_at(Time::from_seconds(END));
     let lost = 0.5 * before * before / (lighter + 1.0);
@@ -104,6 +104,6 @@ fn costly_impacts_far_apart_may_be_a_hundred_times_as_many_again() {
     advance(&mut system, END).expect("they part again");
     let counts = system.counts();
     assert!(counts.impacts > 10_000, "{counts:?}");
-    assert_eq!(counts.storms, 0);
+    assert_eq!(counts.accumulations, 0);
     assert!((energy(&system, END) / before - 1.0).abs() < 1e-10);
 }
