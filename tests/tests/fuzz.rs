@@ -215,6 +215,10 @@ const ONCE_BROKEN: &[(u64, &str)] = &[
         "a light body on a stiff spring, 70 km from the origin: it sank, touched without force, from below its least gap",
     ),
     (
+        64_037_171,
+        "a contact that began at the very end of its features ran off at once, and came back within a step, unseen",
+    ),
+    (
         65_001_514,
         "a contact beyond its features went far off and came back within a step, and was held on the way",
     ),

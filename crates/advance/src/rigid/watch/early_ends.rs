@@ -198,14 +198,23 @@ fn find_early_sinking(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, samp
     }
 }
 
-/// Offers the earliest contact that comes onto its features and runs off again before the first node: one that has
-/// just taken over from its neighbour starts at the end of its features, or beyond by rounding.
+/// Offers the earliest contact that runs off its features before the first node, of those that start at the end of their
+/// features: one that has just begun there may run off at once and come back, and one that has taken over from its
+/// neighbour may start beyond by rounding, come onto its features and run off again.
 fn find_early_change(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, rooms: &[[f64; NODES]]) {
-    for (row, values) in rooms.iter().enumerate() {
-        let fall = fall_after_rise(values, dynamics.group.span(), |offset| {
+    let at_end = 2.0 * dynamics.physics.mechanism.change_margin();
+    for (row, values) in rooms.iter().enumerate().filter(|(_, values)| values[0] <= at_end) {
+        let span = dynamics.group.span();
+        let mut room_at = |offset: f64| {
             dynamics.put_row_at(row, offset);
             way_to_end(dynamics, row)
-        });
+        };
+        let fall = if values[0] < 0.0 {
+            fall_after_rise(values, span, room_at)
+        } else {
+            let early = std::array::from_fn(|index| room_at(early_node(index, span)));
+            early_fall(values[0], &early, span, room_at)
+        };
         earliest.offer(fall, SegmentEnd::Change(row));
     }
 }
