@@ -52,9 +52,6 @@ pub(crate) struct Assembly {
     pub(super) sunk: Vec<(f64, Time)>,
 }
 
-/// Depth of other contacts of two bodies as a multiple of that to which one has sunk.
-const SUNK_BESIDE: f64 = 2.0;
-
 impl Assembly {
     /// The bodies at a time at which none is in a group.
     pub(crate) fn new(
@@ -190,7 +187,8 @@ impl Assembly {
             }
         });
         let sunk = depths[0].max(depths[1]);
-        if sunk > 0.0 { (SUNK_BESIDE * sunk).min(self.thinness(bodies)) } else { 0.0 }
+        // Other contacts of the two bodies may lie twice as deep.
+        if sunk > 0.0 { (2.0 * sunk).min(self.thinness(bodies)) } else { 0.0 }
     }
 }
 

@@ -34,8 +34,6 @@ impl Dynamics<'_> {
 /// tens of times more than the ends of steps, and much more where connectors determine angles poorly.
 const INNER_ERRORS: f64 = 50.0;
 
-/// Place in a step, as a fraction of it, at which the errors of connectors are read.
-pub(crate) const MIDDLE: f64 = 0.5;
-
-/// Places in a step at which the errors of contacts are read: since errors often change sign in the middle, two more.
-const INNER: [f64; 3] = [MIDDLE, 0.3, 0.7];
+/// Places in a step, as fractions of it, at which the errors of contacts are read; those of connectors are read at the
+/// first. Errors often change sign in the middle: there are two more.
+const INNER: [f64; 3] = [0.5, 0.3, 0.7];

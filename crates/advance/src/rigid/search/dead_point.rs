@@ -20,9 +20,6 @@ use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, ConnectorId, GapState, first_closing_time};
 use halfgap_geometry::{Feature, FeatureId};
 
-/// Apparent loss of a gap as a multiple of the connectors' error in the middle of a step.
-const SEEMING: f64 = 2.0;
-
 impl Searching<'_> {
     /// True if two features that fire turn back at a dead point: the search lets them come down to the least gap of
     /// such from now on.
@@ -96,11 +93,11 @@ fn corners_of(assembly: &Assembly, Touch { bodies, features }: Touch) -> Option<
 }
 
 /// Gap [m] to which grazing features may seem to come: between the ends of a step dense output has bodies off their
-/// active rows, which is no real depth.
+/// active rows, by twice the connectors' error in the middle of the step, which is no real depth.
 fn least_dead_point_gap(assembly: &Assembly, bodies: [BodyId; 2]) -> f64 {
     let errors =
         bodies.iter().filter_map(|&body| assembly.shared_by(body)).map(|shared| shared.largest_error);
-    dead_point_gap(assembly, bodies) - SEEMING * errors.sum::<f64>()
+    dead_point_gap(assembly, bodies) - 2.0 * errors.sum::<f64>()
 }
 
 /// True if a rope, one end of which other connectors hold, too, is slack again in its present motion before it is

@@ -50,9 +50,6 @@ mod tests {
     use halfgap_collision::{Body, BodyState};
     use halfgap_geometry::Shape;
 
-    const MOVING: BodyId = BodyId(0);
-    const NEAR: BodyId = BodyId(1);
-    const FAR: BodyId = BodyId(2);
     /// Time [s] at which the moving square meets the near one.
     const MEETS_NEAR: f64 = 0.05;
     /// Time [s] at which the moving square meets the far one, if the near one is away.
@@ -74,20 +71,22 @@ mod tests {
     #[test]
     fn contacts_after_the_first_one_are_not_looked_for() {
         let rooms = squares_in_a_row().into_rooms();
+        let [moving, near, far] = [0, 1, 2].map(BodyId);
         let known = |a, b| {
             let pair = rooms.pairs.get(rooms.pairs.between(a, b).expect("they are near each other"));
             (pair.prediction(), pair.clear().seconds())
         };
-        let (prediction, time) = known(MOVING, NEAR);
+        let (prediction, time) = known(moving, near);
         assert!(matches!(prediction, Prediction::Contact(_)) && (time - MEETS_NEAR).abs() < 1e-6);
-        let (prediction, clear) = known(MOVING, FAR);
+        let (prediction, clear) = known(moving, far);
         assert!(prediction == Prediction::SearchOn && clear > MEETS_NEAR && clear < MEETS_FAR, "{clear}");
     }
 
     #[test]
     fn where_the_first_contact_does_not_come_the_next_is_found() {
         let mut system = squares_in_a_row();
-        let away = VelocityChange { body: NEAR, velocity: DVec2::new(0.0, 100.0), angular_velocity: 0.0 };
+        let near = BodyId(1);
+        let away = VelocityChange { body: near, velocity: DVec2::new(0.0, 100.0), angular_velocity: 0.0 };
         system.intervene(Time::ZERO, &[away]).expect("nothing touches");
         let impact = loop {
             let handled = system.handle_next().expect("nothing is in the way");

@@ -6,7 +6,6 @@
 
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::group::dynamics::Dynamics;
-use crate::rigid::group::inner::MIDDLE;
 use crate::rigid::group::samples::{EARLY, NODES, Samples};
 use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::remedies::Remedy;
@@ -173,7 +172,7 @@ fn find_who_may_leave(dynamics: &mut Dynamics<'_>, rooms: &mut Vec<[f64; NODES]>
         return;
     }
     find_bounds(dynamics);
-    dynamics.place_at(MIDDLE * dynamics.group.span());
+    dynamics.place_at(0.5 * dynamics.group.span());
     rooms.extend((0..dynamics.group.rows().len()).map(|row| {
         let sample = if stays(dynamics, row) { f64::INFINITY } else { 0.0 };
         [sample; NODES]
