@@ -11,7 +11,7 @@
 //!   that was changed otherwise;
 //! * clarabel: velocity form, building the solver and solving, tolerances 1e-12.
 //!
-//! Then, with `-- held` or without a filter, the parts of `ActiveRows` on chains and pyramids; with `-- impact`
+//! Then, with `-- active` or without a filter, the parts of `ActiveRows` on chains and pyramids; with `-- impact`
 //! or without a filter, impacts by each law, rows given anew. Each time is the least mean of some batches.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on should stop")]
 

@@ -146,12 +146,12 @@ impl Impact {
         let is_slow = |row: &CollisionRow, rate| {
             rate <= if row.was_active { limit.max(row.velocity_tol) } else { limit }
         };
-        let is_held = |&index: &usize| {
+        let is_active = |&index: &usize| {
             let row = &self.rows[index];
             (row.is_bilateral() || is_slow(row, self.rates[index])) && self.can_move(index)
         };
         set.clear();
-        set.extend((0..self.rows.len()).filter(is_held));
+        set.extend((0..self.rows.len()).filter(is_active));
     }
 
     /// Solves the rows of an ascending set together; those that close are to rebound.

@@ -66,7 +66,7 @@ pub(crate) fn settle(
     let share = if region.is_hasty() { NEGLIGIBLE } else { 1.0 };
     let is_candidate = |record: &Collision| {
         let rest = if is_start { view.assembly.start_rest_of(record) } else { rest };
-        holds(view.assembly, record) && record.is_contact(-rest..=share * rest)
+        may_carry_force(view.assembly, record) && record.is_contact(-rest..=share * rest)
     };
     let records = || region.records().iter().enumerate();
     settling.candidates.extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
@@ -196,7 +196,10 @@ fn could_hop(
 ) -> bool {
     let is_excluded =
         || Touch::of(record).is_some_and(|touch| settling.is_excluded(touch, Exclusion::Leverless));
-    !settling.leaves(index) && holds(assembly, record) && may_hop(assembly, region, record) && !is_excluded()
+    !settling.leaves(index)
+        && may_carry_force(assembly, record)
+        && may_hop(assembly, region, record)
+        && !is_excluded()
 }
 
 /// Finds the accelerations of a region's bodies under the forces of the candidates.
@@ -220,7 +223,7 @@ pub(crate) fn accelerations_of(
 }
 
 /// True if a unilateral row may carry a force: connectors always do.
-pub(crate) fn holds(assembly: &Assembly, record: &Collision) -> bool {
+pub(crate) fn may_carry_force(assembly: &Assembly, record: &Collision) -> bool {
     assembly.settings().impulse_step.is_none() || record.parties.primary.site.is_none()
 }
 

@@ -32,7 +32,7 @@ pub(crate) fn leave_loose_corner(rooms: &mut Rooms, work: &mut EventWork) -> Res
     if !rooms.assembly.remedies().act(Remedy::LooseCorner) {
         return Ok(false);
     }
-    if let Some(side) = sides(corner.id).iter().position(|is_held| *is_held) {
+    if let Some(side) = sides(corner.id).iter().position(|is_active| *is_active) {
         take_side(&rooms.assembly, &mut rooms.connectors, &mut work.region, corner, side);
     } else {
         let rates = corner.rates(&work.region);

@@ -85,8 +85,8 @@ fn note_active_connectors(connectors: &mut Connectors, region: &Region, settling
             let id = connectors.of(body)[index];
             if !connectors.connector(id).is_bilateral() {
                 let mut active = settling.active().iter();
-                let is_held = active.any(|(_, row)| row.source == RowSource::Connector(id, 0));
-                connectors.set_active(id, is_held);
+                let is_active = active.any(|(_, row)| row.source == RowSource::Connector(id, 0));
+                connectors.set_active(id, is_active);
             }
         }
     }

@@ -44,8 +44,7 @@ pub(crate) fn set_rules(
     set_trigger_gaps(assembly, search, region);
     for (touch, gap) in region.touches().iter().zip(region.motions()) {
         let Some(pair) = pairs.between(touch.bodies[0], touch.bodies[1]) else { continue };
-        let is_held = settling.is_active(*touch);
-        let mode = if is_held {
+        let mode = if settling.is_active(*touch) {
             Mode::Active
         } else if is_watched(assembly, groups, *touch) {
             Mode::Idle

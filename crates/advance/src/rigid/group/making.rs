@@ -50,10 +50,10 @@ impl Group {
         for index in 0..self.bodies.len() {
             for &id in connectors.of(self.bodies[index]) {
                 let source = RowSource::Connector(id, 0);
-                let is_held = self.rows.iter().any(|row| row.source == source);
+                let is_active = self.rows.iter().any(|row| row.source == source);
                 let is_known = || self.stops.iter().any(|stop| stop.id == id);
                 if (connectors.connector(id).is_stop() || self.is_idly_taut(assembly, connectors, id))
-                    && !is_held
+                    && !is_active
                     && !is_known()
                 {
                     self.stops.push(connectors.stop(assembly, id));

@@ -33,15 +33,15 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
         let moving = [a, b].map(|body| view.assembly.moving_at(body, time));
         for row in 0..view.connectors.row_count(id) {
             let mut record = view.connectors.connector_record(view.assembly, id, row, &moving, time);
-            let is_held = connector.is_bilateral() || view.connectors.is_active_unilaterally(id);
+            let is_active = connector.is_bilateral() || view.connectors.is_active_unilaterally(id);
             // A rope that is active is taut, however far dense output has its ends from its length.
-            record.must_handle |= is_held;
+            record.must_handle |= is_active;
             if !record.must_handle && !record.gap_state().is_touching() {
                 continue;
             }
             // A row at rest is active, or may become so; an active rope is at no dead point, though dense output may have it
             // closing.
-            let collides = !is_held && record.gap_state().is_colliding(view.assembly.rest_speed());
+            let collides = !is_active && record.gap_state().is_colliding(view.assembly.rest_speed());
             if is_rope(connector) && collides && rope_is_near_dead_point(view.assembly, view.connectors, id) {
                 continue;
             }
