@@ -443,6 +443,7 @@ type OfSeed = fn(u64) -> Value;
 const NEEDS: &[(Remedy, OfSeed, u64)] = &[
     (Remedy::Accumulation, impulses_of_seed, 71_001_799),
     (Remedy::Overtaken, impulses_of_seed, 71_000_557),
+    (Remedy::LenientForces, variation_of_seed, 58_008_387),
 ];
 
 #[test]

@@ -43,6 +43,8 @@ pub enum Remedy {
     Leverless,
     /// Contacts that run off at once are excluded where two corners hand over to each other without end.
     LeavingNeighbours,
+    /// Contacts that contradict each other by little get forces by least squares.
+    LenientForces,
     /// Contradictions that the rounding of bodies at rest explains are taken for no forces.
     RestingContradiction,
     /// Candidates that depend on others are excluded where the rows found would pull as equations.
@@ -63,7 +65,7 @@ pub enum Remedy {
 
 impl Remedy {
     /// All remedies, in the order of their declaration.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::GhostCorners,
         Self::DeadPoints,
         Self::Insistence,
@@ -81,6 +83,7 @@ impl Remedy {
         Self::JammedForces,
         Self::Leverless,
         Self::LeavingNeighbours,
+        Self::LenientForces,
         Self::RestingContradiction,
         Self::DependentRows,
         Self::Lifting,
@@ -112,6 +115,7 @@ impl Remedy {
             Self::JammedForces => "jammed_forces",
             Self::Leverless => "leverless",
             Self::LeavingNeighbours => "leaving_neighbours",
+            Self::LenientForces => "lenient_forces",
             Self::RestingContradiction => "resting_contradiction",
             Self::DependentRows => "dependent_rows",
             Self::Lifting => "lifting",

@@ -146,6 +146,9 @@ fn solve_candidates(
     } else {
         Solved::Somehow
     };
+    if found.is_err() && remedies.act(Remedy::LenientForces) {
+        found = found.or_else(|error| settling.solve_leniently().map_err(|_| error));
+    }
     if let Err(source) = found {
         // Bodies at rest on each other turn by up to `rest` over their size, which may be rounding. As they go along or
         // round each other, gaps accelerate by twice the product of that spin and the speed between them.

@@ -135,6 +135,11 @@ impl Settling {
         Ok(())
     }
 
+    /// Solves for the forces of candidates that contradict each other by more than rounding.
+    pub(super) fn solve_leniently(&mut self) -> Result<(), SolveError> {
+        self.lenient.solve(&self.problem, &mut self.solution)
+    }
+
     /// Starts an event: sets for each record of its region whether it is likely to carry a force, if that is known.
     pub(crate) fn set_likely(&mut self, likely: impl Iterator<Item = Option<bool>>) {
         self.likely.clear();
