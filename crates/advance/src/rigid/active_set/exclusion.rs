@@ -2,6 +2,7 @@
 
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::contacts::touch::Touch;
+use crate::rigid::region::touching::Region;
 
 /// Why a candidate is excluded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +20,13 @@ pub(crate) struct Excluded {
     pub(super) record: usize,
     pub(super) touch: Option<Touch>,
     pub(super) why: Exclusion,
+}
+
+impl Excluded {
+    /// A record of a region, by its index there.
+    pub(super) fn of(region: &Region, record: usize, why: Exclusion) -> Self {
+        Self { record, touch: Touch::of(&region.records()[record]), why }
+    }
 }
 
 impl Settling {

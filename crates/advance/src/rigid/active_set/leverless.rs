@@ -23,17 +23,12 @@ pub(crate) fn exclude_leverless(
     candidates.retain(|&index| {
         let record = &region.records()[index];
         let bodies = record.bodies();
-        let is_leverless = !record.parties.bilateral
+        let is_leverless = Touch::of(record).is_some()
             && !record.gap_state().is_sunk_below(dead_point_gap(assembly, bodies))
             && bodies.iter().any(|&body| is_tied(connectors, body))
             && levers.left_of(region, record, |body| assembly.inertia(body)) < NEGLIGIBLE * NEGLIGIBLE;
-        let touch = Touch::of(record).filter(|_| is_leverless);
-        excluded.extend(touch.is_some().then_some(Excluded {
-            record: index,
-            touch,
-            why: Exclusion::Leverless,
-        }));
-        touch.is_none()
+        excluded.extend(is_leverless.then(|| Excluded::of(region, index, Exclusion::Leverless)));
+        !is_leverless
     });
     settling.any_excluded(Exclusion::Leverless)
 }

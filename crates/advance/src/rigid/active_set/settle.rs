@@ -236,10 +236,7 @@ fn exclude_distant(assembly: &Assembly, region: &Region, settling: &mut Settling
     let Settling { candidates, excluded, .. } = settling;
     let may_stay = |index: &usize| region.records()[*index].gap_state().is_at_target(assembly.sink());
     let distant = candidates.iter().copied().filter(|index| !may_stay(index));
-    excluded.extend(distant.map(|record| {
-        let touch = Touch::of(&region.records()[record]);
-        Excluded { record, touch, why: Exclusion::Distant }
-    }));
+    excluded.extend(distant.map(|record| Excluded::of(region, record, Exclusion::Distant)));
     candidates.retain(may_stay);
     pose_problem(assembly, region, settling, stage);
 }
