@@ -101,6 +101,7 @@ fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
         ("impacts", ledger.impacts),
         ("captures", ledger.captures),
         ("projections", ledger.projections),
+        ("steps of accumulations", ledger.steps),
         ("interventions", ledger.interventions),
         ("damping", ledger.damping),
     ];

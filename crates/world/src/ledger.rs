@@ -20,6 +20,8 @@ pub struct Ledger {
     pub captures: f64,
     /// Change by projections onto contacts and connectors [J], negative where energy was lost.
     pub projections: f64,
+    /// Change by steps of bodies whose events accumulated [J]: see [`Statistics::region_steps`](crate::Statistics::region_steps).
+    pub steps: f64,
     /// Change by [interventions](crate::World::intervene) [J], before contacts and connectors respond to them; negative
     /// where they slow bodies down.
     pub interventions: f64,
@@ -44,7 +46,8 @@ impl Ledger {
     #[must_use]
     pub fn booked(&self) -> f64 {
         let force_laws: f64 = self.force_laws.iter().map(|law| law.work).sum();
-        self.impacts + self.captures + self.projections + self.interventions + self.damping + force_laws
+        let by_events = self.impacts + self.captures + self.projections + self.steps;
+        by_events + self.interventions + self.damping + force_laws
     }
 
     /// Returns the error of the integration [J]: the change of the energy since the start less the booked changes.

@@ -192,13 +192,19 @@ impl Serialize for StatisticsResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let world = &self.world;
         let any_acted = world.remedies.acted().next().is_some();
-        let fields = 8 + usize::from(self.wall_seconds_median.is_some()) + usize::from(any_acted);
+        let any_steps = world.region_steps > 0;
+        let fields = 8 + usize::from(any_steps) + usize::from(self.wall_seconds_median.is_some()) + usize::from(any_acted);
         let mut statistics = serializer.serialize_struct("StatisticsResult", fields)?;
         statistics.serialize_field("steps", &world.steps)?;
         statistics.serialize_field("evaluations", &world.evaluations)?;
         statistics.serialize_field("impacts", &world.impacts)?;
         statistics.serialize_field("backups", &world.backups)?;
         statistics.serialize_field("contact_solves", &world.contact_solves)?;
+        if any_steps {
+            statistics.serialize_field("region_steps", &world.region_steps)?;
+        } else {
+            statistics.skip_field("region_steps")?;
+        }
         statistics.serialize_field("smallest_gap", &world.smallest_gap)?;
         statistics.serialize_field("largest_connector_error", &world.largest_connector_error)?;
         if any_acted {
@@ -227,8 +233,9 @@ impl Serialize for RemediesJson<'_> {
 /// Serializes energies and booked changes [J], and the error of the integration.
 impl Serialize for Ledger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut ledger =
-            serializer.serialize_struct("Ledger", 10 + usize::from(self.interventions != 0.0))?;
+        let rare = [("steps", self.steps), ("interventions", self.interventions)];
+        let count = rare.iter().filter(|(_, change)| *change != 0.0).count();
+        let mut ledger = serializer.serialize_struct("Ledger", 9 + count)?;
         ledger.serialize_field("start", &self.start)?;
         ledger.serialize_field("start_correction", &self.start_correction)?;
         ledger.serialize_field("kinetic", &self.now.kinetic)?;
@@ -236,10 +243,12 @@ impl Serialize for Ledger {
         ledger.serialize_field("impacts", &self.impacts)?;
         ledger.serialize_field("captures", &self.captures)?;
         ledger.serialize_field("projections", &self.projections)?;
-        if self.interventions == 0.0 {
-            ledger.skip_field("interventions")?;
-        } else {
-            ledger.serialize_field("interventions", &self.interventions)?;
+        for (name, change) in rare {
+            if change == 0.0 {
+                ledger.skip_field(name)?;
+            } else {
+                ledger.serialize_field(name, &change)?;
+            }
         }
         ledger.serialize_field("damping", &self.damping)?;
         ledger.serialize_field("laws", &self.force_laws)?;

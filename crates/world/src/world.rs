@@ -52,6 +52,8 @@ pub struct Statistics {
     pub backups: u64,
     /// Number of contact problems solved, and of solves for the forces of active contacts and connectors.
     pub contact_solves: u64,
+    /// Number of steps of bodies whose events accumulated beyond what was followed one by one.
+    pub region_steps: u64,
     /// Smallest gap [m] of a contact seen, at an event or within a step, negative if bodies overlapped; `None` if no
     /// bodies have touched.
     pub smallest_gap: Option<f64>,
@@ -239,6 +241,7 @@ impl World {
             booked: booked.impacts
                 + booked.captures
                 + booked.projections
+                + booked.steps
                 + booked.interventions
                 + booked.damping
                 + works(|work| work),
@@ -263,6 +266,7 @@ impl World {
             impacts: books.impacts,
             captures: books.captures,
             projections: books.projections,
+            steps: books.steps,
             interventions: books.interventions,
             damping: books.damping,
             force_laws: force_laws
@@ -362,6 +366,7 @@ impl World {
             impacts: counts.impacts,
             backups: counts.backups,
             contact_solves: counts.contact_solves,
+            region_steps: counts.region_steps,
             smallest_gap: counts.smallest_gap,
             largest_connector_error: errors.reduce(f64::max),
             remedies: self.strategy.remedies(),

@@ -15,6 +15,8 @@ pub(crate) enum Source {
     Group(BodyId),
     /// A rope goes taut.
     Connector(ConnectorId),
+    /// The step that a body leads is over.
+    Step(BodyId),
     /// Sunk contacts are put back, where contacts carry impulses only.
     Tick,
     /// A pair comes into contact, or its search goes on.
@@ -34,8 +36,12 @@ impl Sources {
         self.bodies.saturating_mul(2)
     }
 
-    fn tick(self) -> u32 {
+    fn first_step(self) -> u32 {
         self.first_connector().saturating_add(self.connectors)
+    }
+
+    fn tick(self) -> u32 {
+        self.first_step().saturating_add(self.bodies)
     }
 
     fn id(self, source: Source) -> SourceId {
@@ -43,6 +49,7 @@ impl Sources {
             Source::Box(body) => body.0,
             Source::Group(leader) => self.bodies.saturating_add(leader.0),
             Source::Connector(id) => self.first_connector().saturating_add(id.0),
+            Source::Step(leader) => self.first_step().saturating_add(leader.0),
             Source::Tick => self.tick(),
             Source::Pair(pair) => self.tick().saturating_add(1).saturating_add(pair.0),
         })
@@ -53,8 +60,10 @@ impl Sources {
             Source::Box(BodyId(id))
         } else if id < self.first_connector() {
             Source::Group(BodyId(id - self.bodies))
-        } else if id < self.tick() {
+        } else if id < self.first_step() {
             Source::Connector(ConnectorId(id - self.first_connector()))
+        } else if id < self.tick() {
+            Source::Step(BodyId(id - self.first_step()))
         } else if id == self.tick() {
             Source::Tick
         } else {

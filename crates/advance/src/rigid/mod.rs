@@ -47,6 +47,7 @@ mod search;
 mod settings;
 mod shares;
 mod sinking;
+mod stepping;
 mod system;
 #[cfg(test)]
 mod test_scene;
@@ -68,7 +69,7 @@ pub use halfgap_geometry as geometry;
 pub use parts::{BodyPart, PartsError, RigidParts};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
-pub use settings::{ExtraAcceleration, RigidSettings, StepControl};
+pub use settings::{ExtraAcceleration, RegionSteps, RigidSettings, StepControl};
 pub use system::RigidSystem;
 #[cfg(feature = "save")]
 pub use system::SavedSystem;

@@ -2,7 +2,7 @@
 
 use crate::ode::Method;
 use crate::rigid::remedies::RemedySet;
-use crate::rigid::settings::{RigidSettings, StepControl};
+use crate::rigid::settings::{RegionSteps, RigidSettings, StepControl};
 use crate::rigid::shares::NEGLIGIBLE;
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
@@ -19,6 +19,9 @@ const GAP_ROUNDINGS: f64 = 512.0;
 const REST: f64 = 1e-8;
 /// Error of one step as a fraction of the tolerance, at the finest tolerance.
 const LOCAL_SHARE: f64 = 0.25;
+/// Way that forces move a body in a step of a region whose events accumulate, as a fraction of the smallest body's radius
+/// [-]; that of `start_overlap`, by which a scene's shapes may be off.
+const SLACK_SHARE: f64 = 1e-6;
 /// Finest tolerance that rounding leaves room for [-].
 const FINEST_TOLERANCE: f64 = 1e-12;
 
@@ -138,6 +141,7 @@ impl RigidSettings {
             projection: true,
             extra: None,
             impulse_step: None,
+            region_steps: region_steps(&tolerances, scales),
             without: RemedySet::default(),
             joint_small_impacts: false,
             rest_speed,
@@ -173,6 +177,14 @@ fn resolution_time(tolerances: &Tolerances, scales: &Scales) -> f64 {
     } else {
         0.0
     }
+}
+
+/// Steps of regions whose events accumulate: forces move a body by `SLACK_SHARE` of the smallest one, or through half of
+/// the target zone if that is wider. Without forces there are none, as nothing comes back.
+fn region_steps(tolerances: &Tolerances, scales: &Scales) -> Option<RegionSteps> {
+    let slack = tolerances.accuracy.max(SLACK_SHARE * scales.smallest_radius.unwrap_or(0.0));
+    let is_forced = scales.acceleration > 0.0 && slack > 0.0;
+    is_forced.then(|| RegionSteps { span: (2.0 * slack / scales.acceleration).sqrt(), slack })
 }
 
 #[cfg(test)]

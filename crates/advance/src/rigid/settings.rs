@@ -39,8 +39,29 @@ pub struct RigidSettings {
     /// Time [s] in which forces produce `velocity_tol`, or move a body through half of the target zone, whichever is
     /// longer. Bodies with more events than allowed within it are stopped without elasticity (an accumulation).
     pub resolution_time: f64,
+    /// Steps of regions whose events accumulate; `None` if all events are handled one by one.
+    pub region_steps: Option<RegionSteps>,
     /// Remedies that are switched off, for tests of what they are for.
     pub without: RemedySet,
+}
+
+/// Steps of a region whose events accumulate beyond its budget: what lies within them is not told apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct RegionSteps {
+    /// Length [s] of a step: the resolution time of the region.
+    pub span: f64,
+    /// Way [m] that forces move a body from rest within a step; what a step may be off.
+    pub slack: f64,
+}
+
+impl RegionSteps {
+    /// Speed [m/s] that forces give a body in a step.
+    #[must_use]
+    #[inline]
+    pub fn slow(&self) -> f64 {
+        2.0 * self.slack / self.span
+    }
 }
 
 /// Control of the steps of groups: their acceptable errors and their bound.

@@ -23,9 +23,11 @@ use crate::rigid::event::work::EventWork;
 use crate::rigid::parts::PartsError;
 use crate::rigid::parts::{RigidParts, check_bodies_of_force_law};
 use crate::rigid::region::cause::Cause;
+use crate::rigid::region::wide::JOINED;
 use crate::rigid::remedies::RemedyCounts;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::room_to_sink;
+use crate::rigid::stepping::ending::work_within;
 use crate::system::EventDriven;
 use crate::time::Time;
 use halfgap_collision::{BodyId, Connector, ConnectorId, RailHint};
@@ -176,15 +178,17 @@ impl RigidSystem {
         self.rooms.search.excluded()
     }
 
-    /// Depth [m] by which a pair of bodies may sink below the target gap until it is put back; zero where contacts
-    /// carry forces.
+    /// Depth [m] by which a pair of bodies may sink below the target gap until it is put back: where contacts
+    /// carry impulses only, and in a step of their region.
     ///
     /// # Panics
     /// If there is no such body.
     #[must_use]
     #[inline]
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
-        room_to_sink(&self.rooms.assembly, bodies)
+        let assembly = &self.rooms.assembly;
+        let steps = assembly.settings().region_steps.filter(|_| assembly.share_step(bodies));
+        room_to_sink(assembly, bodies) + steps.map_or(0.0, |steps| JOINED * steps.slack)
     }
 
     /// Evaluates the forces of all active rows at a time within the present segments. Allocates.
@@ -203,7 +207,10 @@ impl RigidSystem {
 
     /// Writes the energy ledger at a time within the present segments over `ledger`, whose buffer is used again.
     pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
-        write_ledger(&self.rooms.assembly, &self.rooms.groups, &self.rooms.books, time, ledger);
+        let Rooms { assembly, groups, books, zeno, .. } = &self.rooms;
+        write_ledger(assembly, groups, books, time, ledger);
+        ledger.steps -=
+            zeno.stepped().iter().map(|stepped| work_within(assembly, stepped, time)).sum::<f64>();
     }
 
     /// Sets the total time [s] to be simulated; without it [`AdvanceError::Crawls`] and [`AdvanceError::TooFast`] are

@@ -129,6 +129,11 @@ impl Assembly {
         self.shared[leader.index()] = shared;
     }
 
+    /// Notes until when the step that a body leads lasts.
+    pub(crate) fn share_span(&mut self, leader: BodyId, end: Time) {
+        self.shared[leader.index()] = Shared { end, ..Shared::default() };
+    }
+
     /// Notes the depth [m] of the deepest contact of a body's group, which ends now.
     pub(crate) fn note_sunk(&mut self, body: BodyId, depth: f64) {
         self.sunk[body.index()] = (depth, self.now);
@@ -162,6 +167,20 @@ impl Assembly {
             None
         } else {
             self.leader_of[body.index()].map(|leader| self.shared[leader.index()].end)
+        }
+    }
+
+    /// True if a step of their region takes care of the contacts between two bodies.
+    pub(crate) fn share_step(&self, bodies: [BodyId; 2]) -> bool {
+        let [a, b] = bodies;
+        let coasts = |body: BodyId| self.trajectory(body).is_coasting();
+        match bodies.map(|body| self.is_movable(body)) {
+            [true, true] => {
+                coasts(a) && coasts(b) && self.leader_of[a.index()] == self.leader_of[b.index()]
+            }
+            [true, false] => coasts(a),
+            [false, true] => coasts(b),
+            [false, false] => false,
         }
     }
 

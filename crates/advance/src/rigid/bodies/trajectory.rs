@@ -45,10 +45,23 @@ pub struct Trajectory {
     body: Body,
     /// Number of whole turns to be added to the angles of the present motion.
     turns: f64,
-    /// The present motion is `dense`, from an integrator, not `flight`.
-    is_integrated: bool,
+    present: Present,
     /// Dense output of the last integrated segment, if there was one.
     dense: Option<Box<DensePath>>,
+    /// Uniform motion of the last step of a region, if there was one.
+    coast: Option<Box<Flight>>,
+}
+
+/// Kind of a body's present motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+enum Present {
+    /// In closed form, under the body's own acceleration and damping.
+    Flight,
+    /// Dense output of an integrator.
+    Integrated,
+    /// Uniform, in a step of a region whose events accumulate.
+    Coasting,
 }
 
 impl Trajectory {
@@ -61,7 +74,7 @@ impl Trajectory {
             Flight::new(state, free_motion.acceleration, free_motion.linear_rate, free_motion.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
-        Self { start: time, flight, reach, disc, body, turns: 0.0, is_integrated: false, dense: None }
+        Self { start: time, flight, reach, disc, body, turns: 0.0, present: Present::Flight, dense: None, coast: None }
     }
 
     /// Takes a shape that is equal to its own from a pool, or leaves its own there.
@@ -108,7 +121,7 @@ impl Trajectory {
     /// an angle, the larger its rounding, and that of the places of corners.
     pub(crate) fn unwind(&mut self) {
         let angle = self.flight.start().angle;
-        if !self.is_integrated && angle.abs() > TAU {
+        if self.present == Present::Flight && angle.abs() > TAU {
             let turns = (angle / TAU).round();
             // The fused product is exact, and with the correction the difference has only the rounding of the angle.
             let unwound = turns.mul_add(-TAU, angle) - turns * TAU_REST;
@@ -121,7 +134,7 @@ impl Trajectory {
     #[must_use]
     #[inline]
     pub fn flight_start(&self) -> Option<&BodyState> {
-        (!self.is_integrated).then(|| self.flight.start())
+        self.flight().map(Flight::start)
     }
 
     pub(crate) fn moving_at(&self, time: Time) -> Moving {
@@ -131,8 +144,9 @@ impl Trajectory {
     /// The present motion.
     #[inline]
     pub(crate) fn path(&self) -> Path<'_> {
-        match &self.dense {
-            Some(dense) if self.is_integrated => Path::Dense(dense),
+        match (self.present, &self.dense, &self.coast) {
+            (Present::Integrated, Some(dense), _) => Path::Dense(dense),
+            (Present::Coasting, _, Some(coast)) => Path::Flight(coast),
             _ => Path::Flight(&self.flight),
         }
     }
@@ -173,12 +187,15 @@ impl Trajectory {
     /// The present motion in closed form, if it has one.
     #[inline]
     pub(crate) fn flight(&self) -> Option<&Flight> {
-        (!self.is_integrated).then_some(&self.flight)
+        match self.path() {
+            Path::Flight(flight) => Some(flight),
+            Path::Dense(_) => None,
+        }
     }
 
     /// True if the body neither moves nor is about to.
     pub(crate) fn is_at_rest(&self) -> bool {
-        !self.is_integrated && self.flight.is_at_rest()
+        self.present == Present::Flight && self.flight.is_at_rest()
     }
 
     /// Cuts the segment at a time and starts a flight with changed velocities.
@@ -195,14 +212,30 @@ impl Trajectory {
     /// Starts a flight from a state at a time.
     pub(crate) fn fly_from(&mut self, time: Time, state: BodyState) {
         self.start = time;
-        self.is_integrated = false;
+        self.present = Present::Flight;
         self.flight.restart(state);
+    }
+
+    /// Starts a uniform motion from a state at a time.
+    pub(crate) fn coast_from(&mut self, time: Time, state: BodyState) {
+        self.start = time;
+        self.present = Present::Coasting;
+        match &mut self.coast {
+            Some(coast) => coast.restart(state),
+            None => self.coast = Some(Box::new(Flight::new(state, DVec2::ZERO, 0.0, 0.0))),
+        }
+    }
+
+    /// True if the body moves uniformly in a step of its region.
+    #[inline]
+    pub(crate) fn is_coasting(&self) -> bool {
+        self.present == Present::Coasting
     }
 
     /// Starts an integrated segment of a length `span` [s]; `polynomials` are x, y and angle.
     pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3], span: f64) {
         self.start = start;
-        self.is_integrated = true;
+        self.present = Present::Integrated;
         self.dense.get_or_insert_default().set(polynomials, span);
     }
 }

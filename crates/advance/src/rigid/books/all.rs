@@ -112,6 +112,16 @@ impl Books {
         self.counts.accumulations += 1;
     }
 
+    /// Counts a step of a region whose events accumulate.
+    pub(crate) fn note_region_step(&mut self) {
+        self.counts.region_steps += 1;
+    }
+
+    /// Books a change of energy [J] by steps of a region whose events accumulate.
+    pub(crate) fn book_steps(&mut self, change: f64) {
+        self.ledger.steps += change;
+    }
+
     /// Books a change of energy [J] by a projection.
     pub(crate) fn book_projection(&mut self, change: f64) {
         self.ledger.projections += change;

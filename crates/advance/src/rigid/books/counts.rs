@@ -18,6 +18,8 @@ pub struct Counts {
     pub evaluations: u64,
     /// Accumulations of impacts that were ended without elasticity.
     pub accumulations: u64,
+    /// Steps of regions whose events accumulated.
+    pub region_steps: u64,
     /// Smallest gap [m] seen, negative for overlap; `None` if none was measured.
     pub smallest_gap: Option<f64>,
     /// Largest error of a connector's gap [m] seen; `None` if none was measured.

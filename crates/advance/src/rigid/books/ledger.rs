@@ -12,6 +12,8 @@ pub struct Ledger {
     pub captures: f64,
     /// Projections onto active rows.
     pub projections: f64,
+    /// Steps of regions whose events accumulated.
+    pub steps: f64,
     /// Velocity changes by the caller, see [`RigidSystem::intervene`].
     pub interventions: f64,
     /// Work of damping.

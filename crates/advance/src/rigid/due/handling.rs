@@ -7,6 +7,8 @@ use crate::rigid::due::events::{handle_contact, handle_group, handle_rope};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::life::complete_dense;
 use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::steps::handle_step;
+use crate::rigid::stepping::ending::all_coast;
 use crate::rigid::ticks::handle_tick;
 use crate::rigid::zeno::turns::note_search;
 use crate::time::Time;
@@ -24,6 +26,7 @@ pub(crate) fn happen(
     rooms.assembly.set_now(time);
     let outcome = act(rooms);
     rooms.books.set_told_time(rooms.assembly.now());
+    debug_assert!(outcome.is_err() || all_coast(&rooms.assembly, &rooms.zeno), "a body has left its step");
     if outcome.is_ok() && !rooms.books.told().has_hit() && rooms.books.told().changes().is_empty() {
         let Some(crawls) = rooms.zeno.take_crawls() else { return Ok(None) };
         finish(rooms);
@@ -46,6 +49,7 @@ pub(crate) fn handle(rooms: &mut Rooms, source: Source) -> Result<(), AdvanceErr
         Source::Group(leader) => return handle_group(rooms, leader),
         Source::Connector(id) if rooms.searching().rope_fires(id) => return handle_rope(rooms, id),
         Source::Connector(_) => {}
+        Source::Step(leader) => return handle_step(rooms, leader),
         Source::Tick => return handle_tick(rooms),
         Source::Pair(pair) => match rooms.pairs.get(pair).prediction() {
             Prediction::Contact(features) => return handle_contact(rooms, pair, features),

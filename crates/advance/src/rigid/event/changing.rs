@@ -8,6 +8,7 @@ use crate::rigid::event::cutting::cut_groups;
 use crate::rigid::event::going_on::go_on;
 use crate::rigid::event::impacting::{collect_again, collide};
 use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::steps::has_gone_by_steps;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::region::collecting::{collect_region, passes_by};
 use crate::rigid::region::records::remeasure;
@@ -39,6 +40,9 @@ pub(crate) fn handle_change(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
     let rest = rooms.assembly.rest_speed();
     if work.region.records().iter().any(|record| record.gap_state().closes(rest)) {
         return collide(rooms, work);
+    }
+    if has_gone_by_steps(rooms, work)? {
+        return Ok(());
     }
     go_on(rooms, work)
 }

@@ -24,6 +24,7 @@ use crate::rigid::region::touching::{Region, measure_touches};
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::shares::{HALF_ZONE, MINOR};
+use crate::rigid::stepping::ending::end_step;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Zone};
@@ -60,6 +61,10 @@ pub(crate) fn cut_groups(rooms: &mut Rooms, region: &mut Region) {
     }
     for &leader in region.groups() {
         dissolve(rooms, leader);
+    }
+    let Rooms { assembly, zeno, books, agenda, .. } = rooms;
+    for &leader in region.steps() {
+        end_step((assembly, zeno), (books, agenda), leader);
     }
 }
 

@@ -8,6 +8,7 @@ use crate::rigid::event::going_on::go_on;
 use crate::rigid::event::lift::put_back;
 use crate::rigid::event::resolving::resolve_impact;
 use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::steps::has_gone_by_steps;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::impact::impacts::Manner;
 use crate::rigid::region::cause::Cause;
@@ -20,7 +21,7 @@ use crate::rigid::zeno::pace::forget_paces;
 pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     let fired = work.region.cause().fired();
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
-    if !work.region.groups().is_empty() {
+    if work.region.is_led() {
         cut_groups(rooms, &mut work.region);
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     }
@@ -35,12 +36,20 @@ pub(crate) fn handle_impact(rooms: &mut Rooms, work: &mut EventWork) -> Result<(
 
 /// Resolves the impact of a region whose bodies are in flight, and goes on.
 pub(crate) fn collide(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
+    if has_gone_by_steps(rooms, work)? {
+        return Ok(());
+    }
     // One event too many in a short time is resolved without elasticity.
     let is_accumulating = {
         let of = (work.region.bodies(), work.region.records());
         note_events(&rooms.assembly, &mut rooms.zeno, &mut rooms.books, of)
     };
     work.region.set_accumulating(is_accumulating && rooms.assembly.remedies().act(Remedy::Accumulation));
+    strike(rooms, work)
+}
+
+/// Resolves the impact of a region whose bodies are in flight, without elasticity if its events accumulate, and goes on.
+pub(crate) fn strike(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), AdvanceError> {
     let is_accumulating = work.region.is_accumulating();
     let mut report = rooms.books.take_report();
     let now = rooms.assembly.now();
@@ -77,7 +86,7 @@ pub(crate) fn collect_again(rooms: &mut Rooms, work: &mut EventWork) {
     work.seeds.clear();
     work.seeds.extend(work.region.bodies());
     collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
-    if !work.region.groups().is_empty() {
+    if work.region.is_led() {
         cut_groups(rooms, &mut work.region);
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
     }

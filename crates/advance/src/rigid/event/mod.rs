@@ -30,5 +30,6 @@ pub(super) mod rooms;
 pub(super) mod rules;
 pub(super) mod settling;
 pub(super) mod shift;
+pub(super) mod steps;
 pub(super) mod telling;
 pub(super) mod work;

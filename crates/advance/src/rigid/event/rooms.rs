@@ -21,7 +21,7 @@ use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::Sinking;
 use crate::rigid::zeno::memory::Zeno;
 use crate::time::Time;
-use halfgap_collision::Moving;
+use halfgap_collision::{BodyId, Moving};
 
 /// The parts of a system, each with its own room.
 #[derive(Clone, Debug)]
@@ -42,6 +42,9 @@ pub(crate) struct Rooms {
     /// Which places of a region share their steps.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(crate) coupling: Coupling,
+    /// Bodies that have begun a step.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(crate) coasting: Vec<BodyId>,
     /// Buffers of an event; taken out while one is handled.
     pub(crate) work: Option<Box<EventWork>>,
 }
@@ -72,6 +75,7 @@ impl Rooms {
             sinking: Sinking::default(),
             members: Members::default(),
             coupling: Coupling::default(),
+            coasting: Vec::new(),
             work: None,
             assembly: Assembly::new(trajectories, force_laws, settings, start),
         }
@@ -85,8 +89,8 @@ impl Rooms {
 
     /// A look at all rooms.
     pub(crate) fn view(&self) -> View<'_> {
-        let Self { assembly, connectors, sinking, pairs, search, groups, .. } = self;
-        View { assembly, connectors, sinking, pairs, search, groups }
+        let Self { assembly, connectors, sinking, pairs, search, groups, zeno, .. } = self;
+        View { assembly, connectors, sinking, pairs, search, groups, zeno }
     }
 }
 
@@ -97,6 +101,7 @@ pub(crate) fn with_work<T>(
     act: impl FnOnce(&mut Rooms, &mut EventWork) -> T,
 ) -> T {
     let mut work = rooms.work.take().unwrap_or_default();
+    rooms.zeno.stepped_mut().begin_event();
     work.region.set_cause(cause);
     let outcome = act(rooms, &mut work);
     work.region.set_cause(Cause::Other);

@@ -4,6 +4,7 @@ use crate::rigid::active_set::settling::Settling;
 use crate::rigid::books::report::ImpactReport;
 use crate::rigid::event::shift::Lift;
 use crate::rigid::region::touching::Region;
+use crate::rigid::stepping::step::Stepper;
 use crate::rigid::zeno::repeats::CALM_REPEATS;
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_contact::Impact;
@@ -29,6 +30,8 @@ pub(crate) struct EventWork {
     pub(crate) stop: ImpactReport,
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) lift: Lift,
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) stepper: Stepper,
     /// Number of times, beyond `CALM_REPEATS`, that the pair that fired has done so without time going by.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) repeats: u32,

@@ -62,17 +62,26 @@ pub(crate) fn collect_region(view: &View<'_>, region: &mut Region, seeds: &[Body
     let mut next = 0;
     while next < region.bodies.len() {
         let body = region.bodies[next];
-        if let Some(group) = group_of(view.assembly, view.groups, body)
-            && !region.groups.contains(&group.leader())
-        {
-            region.groups.push(group.leader());
-            for &mate in group.bodies() {
-                region.add(mate);
-            }
-        }
+        collect_mates(view, region, body);
         collect_connectors(view, region, next, time);
         collect_touches(view, region, next, time);
         next += 1;
+    }
+}
+
+/// Adds the bodies that share a group or a step with a body of the region.
+pub(super) fn collect_mates(view: &View<'_>, region: &mut Region, body: BodyId) {
+    let Some(leader) = view.assembly.leader_of()[body.index()] else { return };
+    if let Some(group) = group_of(view.assembly, view.groups, body)
+        && !region.groups.contains(&leader)
+    {
+        region.groups.push(leader);
+        group.bodies().iter().for_each(|&mate| region.add(mate));
+    } else if let Some(stepped) = view.zeno.stepped().led_by(leader)
+        && !region.steps.contains(&leader)
+    {
+        region.steps.push(leader);
+        stepped.bodies().iter().for_each(|&mate| region.add(mate));
     }
 }
 

@@ -11,3 +11,4 @@ pub(super) mod collecting;
 pub(super) mod records;
 pub(super) mod touching;
 pub(super) mod view;
+pub(super) mod wide;

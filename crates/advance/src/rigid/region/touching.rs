@@ -21,6 +21,8 @@ pub(crate) struct Region {
     pub(super) motions: Vec<GapState>,
     /// Leaders of the groups of these bodies.
     pub(super) groups: Vec<BodyId>,
+    /// Leaders of the steps that these bodies are in.
+    pub(super) steps: Vec<BodyId>,
     /// Cause of the event.
     pub(super) cause: Cause,
     /// True if the event is one too many in a short time.
@@ -46,6 +48,7 @@ impl Region {
         self.touches.clear();
         self.motions.clear();
         self.groups.clear();
+        self.steps.clear();
         self.places.resize(body_count, (0, 0));
         self.stamp = self.stamp.wrapping_add(1);
         if self.stamp == 0 {
@@ -222,6 +225,18 @@ impl Region {
     #[inline]
     pub(crate) fn groups(&self) -> &[BodyId] {
         &self.groups
+    }
+
+    /// Leaders of the steps that these bodies are in.
+    #[inline]
+    pub(crate) fn steps(&self) -> &[BodyId] {
+        &self.steps
+    }
+
+    /// True if any of its bodies is in a group or in a step: it moves along another's path.
+    #[inline]
+    pub(crate) fn is_led(&self) -> bool {
+        !(self.groups.is_empty() && self.steps.is_empty())
     }
 
     /// True if the event is one too many in a short time.

@@ -6,6 +6,7 @@ use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::sinking::depth::Sinking;
+use crate::rigid::zeno::memory::Zeno;
 
 /// The parts of the system, to be read.
 #[derive(Clone, Copy, Debug)]
@@ -16,4 +17,5 @@ pub(crate) struct View<'a> {
     pub(crate) pairs: &'a Pairs,
     pub(crate) search: &'a Neighbourhood,
     pub(crate) groups: &'a Groups,
+    pub(crate) zeno: &'a Zeno,
 }

@@ -49,6 +49,8 @@ pub(crate) struct Lane {
     pub(super) kind: LaneKind,
     /// The body neither moves nor is about to.
     pub(super) is_at_rest: bool,
+    /// The body moves in a step of its region.
+    pub(super) is_coasting: bool,
 }
 
 /// A disc in which a centre of mass stays for some time.
@@ -79,6 +81,7 @@ impl Lane {
             course: f64::INFINITY,
             kind: LaneKind::Other,
             is_at_rest: false,
+            is_coasting: false,
         };
         lane.follow(trajectory);
         lane
@@ -87,6 +90,7 @@ impl Lane {
     /// Copies the present motion of the body.
     pub(crate) fn follow(&mut self, trajectory: &Trajectory) {
         self.is_at_rest = trajectory.is_at_rest();
+        self.is_coasting = trajectory.is_coasting();
         let Some(parabola) = trajectory.flight().and_then(Flight::parabola) else {
             self.kind = LaneKind::Other;
             self.start = trajectory.start();

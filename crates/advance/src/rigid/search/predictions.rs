@@ -121,7 +121,7 @@ impl Searching<'_> {
     #[inline]
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
         let lane = &self.search.lanes[body.index()];
-        let is_plain = lane.kind == LaneKind::Disc && self.assembly.settings().search.depth == 0.0;
+        let is_plain = lane.kind == LaneKind::Disc && !lane.is_coasting && self.assembly.settings().search.depth == 0.0;
         let Lane { radius, trigger_gap, stay, .. } = *lane;
         is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, trigger_gap, stay })
     }
@@ -147,6 +147,10 @@ impl Searching<'_> {
     fn predict_any(&mut self, pair: PairId, from: Time) {
         let [a, b] = self.pairs.bodies(pair);
         let until = self.known_until(a).min(self.known_until(b));
+        if self.assembly.share_step([a, b]) {
+            self.note_prediction(pair, (Prediction::Quiet, until));
+            return;
+        }
         if self.stays_apart(pair, from, until) {
             self.note_prediction(pair, (Prediction::Quiet, until));
             return;

@@ -1,6 +1,8 @@
 //! The past that the limits decide by, for each body and for the system.
 
 use crate::rigid::error::AdvanceError;
+use crate::rigid::zeno::budget::Spent;
+use crate::rigid::zeno::stepped::AllStepped;
 use crate::rigid::zeno::steps::Pace;
 use crate::time::Time;
 use halfgap_collision::BodyId;
@@ -22,9 +24,25 @@ pub(crate) struct Zeno {
     /// [`AdvanceError::Crawls`] or [`AdvanceError::TooFast`], to be returned once the present event is over; the system
     /// stays valid.
     pub(super) crawls: Option<AdvanceError>,
+    /// What each body has spent of its budget.
+    pub(super) spent: Vec<Spent>,
+    /// The regions that are in a step.
+    stepped: AllStepped,
 }
 
 impl Zeno {
+    /// The regions that are in a step.
+    #[inline]
+    pub(crate) fn stepped(&self) -> &AllStepped {
+        &self.stepped
+    }
+
+    /// The regions that are in a step, to be changed.
+    #[inline]
+    pub(crate) fn stepped_mut(&mut self) -> &mut AllStepped {
+        &mut self.stepped
+    }
+
     /// Sets the total time [s] to be simulated.
     pub(crate) fn set_duration(&mut self, duration: f64) {
         self.duration = duration;
@@ -43,6 +61,7 @@ impl Zeno {
     /// Forgets the recent events of a body.
     pub(crate) fn forget_events(&mut self, body: BodyId) {
         self.recent[body.index()] = Recent::default();
+        self.spent[body.index()] = Spent::default();
     }
 
     /// Makes the memory of `body_count` bodies without any events.
@@ -54,6 +73,8 @@ impl Zeno {
             last_insistent: None,
             last_pull: None,
             crawls: None,
+            spent: vec![Spent::default(); body_count],
+            stepped: AllStepped::new(body_count),
         }
     }
 }

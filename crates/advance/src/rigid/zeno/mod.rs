@@ -8,8 +8,10 @@
 //! followed.
 
 pub(super) mod accumulation;
+pub(super) mod budget;
 pub(super) mod memory;
 pub(super) mod pace;
 pub(super) mod repeats;
+pub(super) mod stepped;
 pub(super) mod steps;
 pub(super) mod turns;

@@ -1,0 +1,182 @@
+//! Regions whose events accumulate go on by steps, and by events again once their budget is whole.
+
+use crate::rigid::active_set::settling::Settling;
+use crate::rigid::agenda::Source;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::error::AdvanceError;
+use crate::rigid::event::cutting::cut_groups;
+use crate::rigid::event::impacting::{collect_again, strike};
+use crate::rigid::event::rooms::{Rooms, with_work};
+use crate::rigid::event::shift::Lift;
+use crate::rigid::event::work::EventWork;
+use crate::rigid::region::cause::Cause;
+use crate::rigid::region::collecting::collect_region;
+use crate::rigid::region::records::remeasure;
+use crate::rigid::region::touching::Region;
+use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among};
+use crate::rigid::settings::RegionSteps;
+use crate::rigid::shares::SEVERAL;
+use crate::rigid::stepping::step::step_on;
+use crate::rigid::zeno::budget::charge_event;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState};
+
+/// Handles the end of the step that a body leads.
+pub(crate) fn handle_step(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
+    let Some(steps) = rooms.assembly.settings().region_steps else { return Ok(()) };
+    with_work(rooms, Cause::Other, |rooms, work| {
+        work.seed([leader]);
+        go_by_steps(rooms, work, steps)
+    })
+}
+
+/// Charges an event to the bodies of its region, which are in flight; true if they have gone on by steps. Where a step has
+/// ended and none follows, contacts are brought to their target first.
+pub(crate) fn has_gone_by_steps(rooms: &mut Rooms, work: &mut EventWork) -> Result<bool, AdvanceError> {
+    let Some(steps) = rooms.assembly.settings().region_steps else { return Ok(false) };
+    let region = &work.region;
+    let is_due = region.bodies().iter().all(|&body| is_plain(&rooms.assembly, &rooms.connectors, body))
+        && charge_event(&rooms.assembly, &mut rooms.zeno, region.bodies(), region.records());
+    if is_due {
+        work.seeds.clear();
+        work.seeds.extend(work.region.bodies());
+        go_by_steps(rooms, work, steps)?;
+    } else if !work.region.steps().is_empty() {
+        work.seeds.clear();
+        work.seeds.extend(work.region.bodies());
+        bring_to_target(rooms, work, steps);
+        collect_again(rooms, work);
+    }
+    Ok(is_due)
+}
+
+/// True for a body that only contacts and a uniform acceleration act on.
+fn is_plain(assembly: &Assembly, connectors: &Connectors, body: BodyId) -> bool {
+    connectors.of(body).is_empty()
+        && assembly.force_laws().of(body).is_empty()
+        && !assembly.trajectory(body).free_motion().is_damped()
+}
+
+/// Takes the seeds, and all that touch them, from one step to the next.
+fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<(), AdvanceError> {
+    work.region.set_cause(Cause::Other);
+    loop {
+        collect_wide(&rooms.view(), &mut work.region, &work.seeds, steps);
+        if !work.region.is_led() {
+            break;
+        }
+        cut_groups(rooms, &mut work.region);
+        work.seeds.clear();
+        work.seeds.extend(work.region.bodies());
+    }
+    let Rooms { assembly, books, zeno, .. } = &mut *rooms;
+    step_on((assembly, books, zeno), &work.region, &mut work.stepper, steps);
+    follow(rooms, &work.region);
+    predict_coasting(rooms, &work.region);
+    let mut part = 0;
+    while let Some(bodies) = work.stepper.leaving(part) {
+        work.seeds.clear();
+        work.seeds.extend(bodies);
+        leave(rooms, work, steps)?;
+        part += 1;
+    }
+    Ok(())
+}
+
+/// Predicts what bodies meet that have begun a step, and its end.
+fn predict_coasting(rooms: &mut Rooms, region: &Region) {
+    let mut bodies = std::mem::take(&mut rooms.coasting);
+    bodies.clear();
+    bodies.extend(region.bodies().iter().filter(|&&body| rooms.assembly.trajectory(body).is_coasting()));
+    for &body in &bodies {
+        for index in 0..rooms.pairs.of_body(body).len() {
+            let link = rooms.pairs.of_body(body)[index];
+            if rooms.assembly.share_step([body, link.other]) && rooms.pairs.get(link.pair).has_rules() {
+                rooms.pairs.retain_modes(link.pair, |_, _| false);
+            }
+        }
+        rooms.searching().renew_stay(body);
+        if rooms.assembly.leader_of()[body.index()] == Some(body)
+            && let Some(end) = rooms.assembly.segment_end(body)
+        {
+            rooms.agenda.set(Source::Step(body), end);
+        }
+    }
+    rooms.searching().predict_all_of(&bodies, true);
+    rooms.coasting = bodies;
+}
+
+/// Lets the seeds, which touch each other, go on by events: what touches is brought to its target, and is stopped there
+/// without elasticity.
+fn leave(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<(), AdvanceError> {
+    bring_to_target(rooms, work, steps);
+    let now = rooms.assembly.now();
+    collect_region(&rooms.view(), &mut work.region, &work.seeds, now);
+    if work.region.is_led() {
+        cut_groups(rooms, &mut work.region);
+        remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, now);
+    }
+    work.region.set_accumulating(true);
+    let outcome = strike(rooms, work);
+    work.region.set_accumulating(false);
+    outcome
+}
+
+/// Moves the seeds, which are in flight, by the least displacement that leaves no gap below its target and brings contacts to it that
+/// are a little above.
+fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) {
+    collect_wide_among(&rooms.view(), &mut work.region, &work.seeds, steps);
+    let EventWork { region, settling, lift, .. } = work;
+    let assembly = &mut rooms.assembly;
+    pose_displacement(assembly, region, lift, steps);
+    if lift.rows.is_empty() || settling.solve(&lift.problem).is_err() {
+        return;
+    }
+    add_displacement(assembly, region, settling, lift);
+    let longest = lift.shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
+    if longest > SEVERAL * JOINED * steps.slack {
+        return;
+    }
+    let now = assembly.now();
+    for (&body, &[x, y, turn]) in region.bodies().iter().zip(&lift.shifts) {
+        let before = assembly.trajectory(body).unwound_at(now);
+        let shift = DVec2::new(x, y);
+        let (trajectory, moved) = (
+            assembly.trajectory(body),
+            BodyState { position: before.position + shift, angle: before.angle + turn, ..before },
+        );
+        let gain = trajectory.free_motion().acceleration.dot(shift) / trajectory.body().inverse_mass;
+        rooms.books.book_steps(-gain);
+        assembly.trajectory_mut(body).fly_from(now, moved);
+    }
+    follow(rooms, &work.region);
+}
+
+/// Tells the search how the bodies of a region move now.
+fn follow(rooms: &mut Rooms, region: &Region) {
+    for &body in region.bodies() {
+        rooms.search.follow(rooms.assembly.trajectory(body), body);
+    }
+}
+
+fn pose_displacement(assembly: &Assembly, region: &Region, lift: &mut Lift, steps: RegionSteps) {
+    let target_gap = assembly.settings().tolerances.target_gap;
+    region.begin(&mut lift.problem, |body| assembly.inertia(body));
+    lift.rows.clear();
+    for (index, record) in region.records().iter().enumerate() {
+        let gap = record.geometry.distance - target_gap;
+        if gap > JOINED * steps.slack {
+            continue;
+        }
+        let Some(row) = region.row_of(record, gap) else { continue };
+        lift.problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+        lift.rows.push(index);
+    }
+}
+
+fn add_displacement(assembly: &Assembly, region: &Region, settling: &Settling, lift: &mut Lift) {
+    lift.shifts.clear();
+    lift.shifts.resize(region.bodies().len(), [0.0; 3]);
+    settling.add_responses(region, &lift.rows, |body| assembly.inertia(body), &mut lift.shifts);
+}

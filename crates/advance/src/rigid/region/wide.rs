@@ -1,0 +1,101 @@
+//! Gathers what may touch within a step of a region: features that are as near as their bodies may come in it.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::contacts::pairs::Link;
+use crate::rigid::region::collecting::collect_mates;
+use crate::rigid::region::touching::Region;
+use crate::rigid::region::view::View;
+use crate::rigid::settings::RegionSteps;
+use halfgap_collision::{BodyId, Collision, Moment, Moving, Tolerances, detect_features_of_pair};
+
+/// Bodies farther apart than this multiple of the slack of a step are not in one region [-]: half of it lets a body that
+/// lies on another come off by rounding, and half is the fall within a step.
+pub(crate) const JOINED: f64 = 2.0;
+
+/// Collects the bodies that touch some seeds, or each other, within the slack of a step, with the records of all places where
+/// they may touch each other or a fixed body within it. Each body is where it is now, in flight or not.
+pub(crate) fn collect_wide(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: RegionSteps) {
+    collect(view, region, seeds, steps, true);
+}
+
+/// Collects the records of places where some bodies may touch each other or a fixed body within a step.
+pub(crate) fn collect_wide_among(
+    view: &View<'_>,
+    region: &mut Region,
+    bodies: &[BodyId],
+    steps: RegionSteps,
+) {
+    collect(view, region, bodies, steps, false);
+}
+
+fn collect(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: RegionSteps, all: bool) {
+    let now = view.assembly.now();
+    region.clear(view.assembly.body_count());
+    for &seed in seeds.iter().filter(|seed| view.assembly.is_movable(**seed)) {
+        region.add(seed);
+    }
+    let mut next = 0;
+    while next < region.bodies.len() {
+        let body = region.bodies[next];
+        if all {
+            collect_mates(view, region, body);
+        }
+        let moving = view.assembly.trajectory(body).moving_at(now);
+        for &Link { other, .. } in view.pairs.of_body(body) {
+            let place = region.place(other);
+            let is_out = !all && place.is_none() && view.assembly.is_movable(other);
+            if is_out || place.is_some_and(|earlier| earlier < next) {
+                continue;
+            }
+            let other_moving = view.assembly.trajectory(other).moving_at(now);
+            let sides = [(body, moving), (other, other_moving)];
+            if collect_near(view.assembly, region, sides, steps) && view.assembly.is_movable(other) {
+                region.add(other);
+            }
+        }
+        next += 1;
+    }
+    let mut records = std::mem::take(&mut region.records);
+    records.retain(|record| {
+        record.bodies().into_iter().all(|body| !view.assembly.is_movable(body) || region.place(body).is_some())
+    });
+    region.records = records;
+}
+
+/// Adds the records of two bodies that may touch within a step; true if they touch now, within its slack.
+fn collect_near(
+    assembly: &Assembly,
+    region: &mut Region,
+    sides: [(BodyId, Moving); 2],
+    steps: RegionSteps,
+) -> bool {
+    let now = assembly.now();
+    let speed = |(body, moving): &(BodyId, Moving)| {
+        let velocity = [moving.velocity.x, moving.velocity.y, moving.angular_velocity];
+        assembly.trajectory(*body).fastest_point(velocity)
+    };
+    // A blow may give a body that is at rest the speed of another, which none within the scene exceeds by much.
+    let fastest = assembly.settings().steps.speed + sides.iter().map(speed).sum::<f64>();
+    let margin = fastest * steps.span + JOINED * steps.slack;
+    let target_gap = assembly.settings().tolerances.target_gap;
+    if sides.iter().all(|&(body, _)| assembly.is_movable(body)) {
+        let reach = sides.iter().map(|&(body, _)| assembly.trajectory(body).reach()).sum::<f64>();
+        let far = reach + margin + target_gap;
+        let offset = sides[0].1.pose.position - sides[1].1.pose.position;
+        if offset.length_squared() > far * far {
+            return false;
+        }
+    }
+    // A record is made of features up to twice the target gap apart.
+    let tolerances = Tolerances { target_gap: margin + target_gap, ..assembly.settings().tolerances };
+    let mut moments = sides.map(|(id, moving)| Moment { id, body: assembly.trajectory(id).body(), moving });
+    // The lesser body first: records do not depend on which of the two was found first.
+    if moments[1].id < moments[0].id {
+        moments.swap(0, 1);
+    }
+    let first = region.records.len();
+    let [a, b] = &moments;
+    detect_features_of_pair(a, b, &tolerances, margin + target_gap, now.seconds(), &mut region.records);
+    let touches = |record: &Collision| record.geometry.distance - target_gap <= JOINED * steps.slack;
+    region.records[first..].iter().any(touches)
+}

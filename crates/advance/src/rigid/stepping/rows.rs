@@ -1,0 +1,91 @@
+//! The contacts of a step, as rows of its problems.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::contacts::rows::row_of;
+use crate::rigid::contacts::touch::Touch;
+use crate::rigid::region::touching::Region;
+use crate::rigid::zeno::stepped::Pressed;
+use halfgap_collision::BodyAcceleration;
+
+/// A contact of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepRow {
+    pub(crate) touch: Touch,
+    /// Places of its primary and its normal body; that of what cannot move is behind the last.
+    pub(crate) places: [usize; 2],
+    /// Coefficients of the velocities of both bodies.
+    pub(crate) jacobian: [f64; 6],
+    /// Change of these velocities by a unit of impulse.
+    pub(crate) response: [f64; 6],
+    /// Change of the rate by a unit of impulse [1/kg].
+    pub(crate) compliance: f64,
+    /// Gap above its target [m].
+    pub(crate) gap: f64,
+    /// Acceleration of the gap [m/s^2] at constant velocities.
+    pub(crate) bend: f64,
+    pub(crate) elasticity: f64,
+    /// Speed [m/s] at which it closed as the last step began, or closes now if it was in none.
+    pub(crate) approach: f64,
+    /// It is between what touches or has pressed: its rate must not close.
+    pub(crate) touches: bool,
+    /// Impulse, or displacement, of the problem that is being solved.
+    pub(crate) impulse: f64,
+    /// The rate must be at least the opposite of this.
+    pub(crate) offset: f64,
+}
+
+impl StepRow {
+    /// Rate [m/s] of its gap at given velocities.
+    #[inline]
+    pub(crate) fn rate(&self, velocities: &[[f64; 3]]) -> f64 {
+        let [[x, y, turn], [u, v, spin]] = self.places.map(|place| velocities[place]);
+        let j = &self.jacobian;
+        j[0] * x + j[1] * y + j[2] * turn + j[3] * u + j[4] * v + j[5] * spin
+    }
+
+    /// Adds what an impulse changes to the velocities.
+    #[inline]
+    pub(crate) fn push(&self, velocities: &mut [[f64; 3]], impulse: f64) {
+        for (side, place) in self.places.into_iter().enumerate() {
+            for (k, velocity) in velocities[place].iter_mut().enumerate() {
+                *velocity += self.response[3 * side + k] * impulse;
+            }
+        }
+    }
+}
+
+/// Lists the contacts of a region, which was collected for a step, as rows. `pressed` are the contacts that pressed in the steps that end
+/// now, sorted; a gap of up to `touching` [m] above the target touches, too.
+pub(crate) fn list_rows(
+    assembly: &Assembly,
+    region: &Region,
+    pressed: &[Pressed],
+    touching: f64,
+    rows: &mut Vec<StepRow>,
+) {
+    let target_gap = assembly.settings().tolerances.target_gap;
+    let still = BodyAcceleration::default();
+    let behind = region.bodies().len();
+    rows.clear();
+    rows.extend(region.records().iter().filter_map(|record| {
+        let touch = Touch::of(record)?;
+        let row = row_of(assembly, record);
+        let compliance = row.coupling(&row);
+        let before = pressed.binary_search_by_key(&touch, |before| before.touch).ok().map(|at| pressed[at]);
+        let gap = record.geometry.distance - target_gap;
+        (compliance > 0.0).then(|| StepRow {
+            touch,
+            places: row.bodies.map(|body| region.place(body).unwrap_or(behind)),
+            jacobian: row.jacobian,
+            response: row.response,
+            compliance,
+            gap,
+            bend: record.motion.kinematics.acceleration(&still, &still),
+            elasticity: row.elasticity,
+            approach: before.map_or(0.0, |before| before.approach),
+            touches: before.is_some() || gap <= touching,
+            impulse: before.map_or(0.0, |before| before.impulse),
+            offset: 0.0,
+        })
+    }));
+}

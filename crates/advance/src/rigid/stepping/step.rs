@@ -1,0 +1,273 @@
+//! From one step of a region to the next.
+
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::all::Books;
+use crate::rigid::forest::Forest;
+use crate::rigid::region::touching::Region;
+use crate::rigid::region::wide::JOINED;
+use crate::rigid::settings::RegionSteps;
+use crate::rigid::shares::{LARGE, MINOR, NEGLIGIBLE};
+use crate::rigid::stepping::rows::{StepRow, list_rows};
+use crate::rigid::stepping::sweeps::sweep;
+use crate::rigid::zeno::budget::charge;
+use crate::rigid::zeno::memory::Zeno;
+use crate::rigid::zeno::stepped::Pressed;
+use glam::DVec2;
+use halfgap_collision::{BodyId, BodyState};
+
+/// Buffers of a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stepper {
+    pub(super) rows: Vec<StepRow>,
+    /// Velocities (x, y, angle) of the bodies of the region, and of what cannot move.
+    velocities: Vec<[f64; 3]>,
+    /// Velocities in the middle of the step.
+    middle: Vec<[f64; 3]>,
+    /// Displacements.
+    shifts: Vec<[f64; 3]>,
+    /// Accelerations without contacts.
+    accelerations: Vec<[f64; 3]>,
+    /// Bodies that are in one step.
+    parts: Forest,
+    /// Number of contacts of each part that begin or end to press, and of all its contacts; at the root of the part.
+    charges: Vec<(usize, usize)>,
+    /// Places of a region in the order of their parts.
+    places: Vec<usize>,
+    /// Bodies whose steps are over, part by part, and the ends of the parts.
+    leaving: Vec<BodyId>,
+    ends: Vec<usize>,
+}
+
+impl Stepper {
+    /// The bodies of a part whose steps are over, by its number; `None` if there are no more.
+    pub(crate) fn leaving(&self, part: usize) -> Option<&[BodyId]> {
+        let end = *self.ends.get(part)?;
+        let start = part.checked_sub(1).map_or(0, |before| self.ends[before]);
+        Some(&self.leaving[start..end])
+    }
+}
+
+/// Brings the bodies of a region, which are in flight and were collected for a step, to velocities at which nothing
+/// closes, and lets those that go on by steps coast. Others are left in flight; [`Stepper::leaving`] lists them.
+pub(crate) fn step_on(
+    (assembly, books, zeno): (&mut Assembly, &mut Books, &mut Zeno),
+    region: &Region,
+    stepper: &mut Stepper,
+    steps: RegionSteps,
+) {
+    list_rows(assembly, region, zeno.stepped().ended(), MINOR * steps.slack, &mut stepper.rows);
+    read_motions(assembly, region, stepper);
+    stop_closing(stepper, steps);
+    find_parts(region, stepper, steps);
+    find_middle(stepper, steps);
+    find_shifts(stepper, steps);
+    set_off((assembly, books, zeno), region, stepper, steps);
+}
+
+fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
+    let now = assembly.now();
+    let states = region.bodies().iter().map(|&body| assembly.trajectory(body).unwound_at(now));
+    stepper.velocities.clear();
+    stepper.velocities.extend(states.map(|state| [state.velocity.x, state.velocity.y, state.angular_velocity]));
+    stepper.velocities.push([0.0; 3]);
+    let free = region.bodies().iter().map(|&body| assembly.trajectory(body).free_motion().acceleration);
+    stepper.accelerations.clear();
+    stepper.accelerations.extend(free.map(|free| [free.x, free.y, 0.0]));
+    stepper.accelerations.push([0.0; 3]);
+}
+
+/// Residual [m/s] of sweeps: in a step it moves a gap by a negligible part of the slack.
+fn residual(steps: RegionSteps) -> f64 {
+    NEGLIGIBLE * steps.slow()
+}
+
+/// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
+/// have brought.
+fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) {
+    let Stepper { rows, velocities, shifts, .. } = stepper;
+    let (mut any_closes, mut any_rebounds, mut brought) = (false, false, 0.0);
+    for row in rows.iter_mut().filter(|row| row.touches) {
+        let rate = row.rate(velocities);
+        row.approach = row.approach.max(-rate);
+        let is_fast = row.approach > steps.slow();
+        row.offset = if is_fast { -row.elasticity * row.approach } else { 0.0 };
+        any_closes |= rate + row.offset < 0.0;
+        any_rebounds |= row.offset < 0.0;
+        brought += 0.5 * row.approach * row.approach / row.compliance;
+    }
+    if !any_closes {
+        return;
+    }
+    let before = &mut *shifts;
+    before.clone_from(velocities);
+    sweep(rows, velocities, residual(steps), |row| row.touches);
+    // The energy that impulses give is their work at the mean of the rates before and after.
+    let given = |rows: &[StepRow], velocities: &[[f64; 3]]| -> f64 {
+        rows.iter().map(|row| 0.5 * row.impulse * (row.rate(before) + row.rate(velocities))).sum()
+    };
+    if any_rebounds && given(rows, velocities) > brought {
+        velocities.clone_from(before);
+        for row in rows.iter_mut() {
+            row.offset = 0.0;
+        }
+        sweep(rows, velocities, residual(steps), |row| row.touches);
+    }
+}
+
+/// Joins the bodies that touch.
+fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
+    let Stepper { rows, parts, .. } = stepper;
+    let count = region.bodies().len();
+    parts.reset(count);
+    for row in rows.iter().filter(|row| row.gap <= JOINED * steps.slack) {
+        let [a, b] = row.places;
+        if a < count && b < count {
+            parts.join(a, b);
+        }
+    }
+}
+
+/// Finds the velocities in the middle of the step, at which no gap falls below its target.
+fn find_middle(stepper: &mut Stepper, steps: RegionSteps) {
+    let Stepper { rows, velocities, middle, accelerations, .. } = stepper;
+    let half = 0.5 * steps.span;
+    middle.clear();
+    middle.extend(velocities.iter().zip(accelerations).map(|(velocity, acceleration)| {
+        [0, 1, 2].map(|k: usize| velocity[k] + half * acceleration[k])
+    }));
+    for row in rows.iter_mut() {
+        row.approach = (-row.rate(velocities)).max(0.0);
+        row.offset = row.gap.max(0.0) / steps.span + half * row.bend;
+    }
+    sweep(rows, middle, residual(steps), |_| true);
+}
+
+/// Finds the displacements that bring what overlaps back to its target, if any overlaps by more than a minor part of the slack. They
+/// go no farther than a small multiple of that overlap.
+fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
+    let Stepper { rows, middle, shifts, .. } = stepper;
+    shifts.clear();
+    shifts.resize(middle.len(), [0.0; 3]);
+    let deepest = rows.iter().map(|row| row.gap).fold(0.0, f64::min);
+    if deepest >= -MINOR * steps.slack {
+        return;
+    }
+    // The impulses of the step are kept: they are where the next one begins.
+    let pushing: Vec<f64> = rows.iter().map(|row| row.impulse).collect();
+    for row in rows.iter_mut() {
+        (row.impulse, row.offset) = (0.0, row.gap);
+    }
+    sweep(rows, shifts, MINOR * MINOR * steps.slack, |row| row.gap <= JOINED * steps.slack);
+    let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
+    if farthest > -LARGE * deepest {
+        shifts.fill([0.0; 3]);
+    }
+    for (row, impulse) in rows.iter_mut().zip(pushing) {
+        row.impulse = impulse;
+    }
+}
+
+/// Lets the parts of a region coast that go on by steps; the other bodies get their velocities.
+fn set_off(
+    (assembly, books, zeno): (&mut Assembly, &mut Books, &mut Zeno),
+    region: &Region,
+    stepper: &mut Stepper,
+    steps: RegionSteps,
+) {
+    list_parts(zeno, region, stepper);
+    let now = assembly.now();
+    let mut parts = std::mem::take(&mut stepper.parts);
+    let Stepper { rows, velocities, middle, shifts, accelerations, charges, places, leaving, ends, .. } = stepper;
+    leaving.clear();
+    ends.clear();
+    let mut rest = places.as_slice();
+    while let Some(&first) = rest.first() {
+        let root = parts.root(first);
+        let length = rest.iter().take_while(|&&place| parts.root(place) == root).count();
+        let (part, others) = rest.split_at(length);
+        rest = others;
+        let (changes, contacts) = charges[root];
+        let units = (changes * contacts) as f64;
+        let bodies = || part.iter().map(|&place| region.bodies()[place]);
+        // A body that touches nothing has nothing to step for.
+        let goes_on = charge(zeno, bodies(), units, now, steps.span) && contacts > 0;
+        if !goes_on {
+            for &place in part {
+                let motion = (velocities[place], shifts[place]);
+                move_on(assembly, books, region.bodies()[place], motion, false);
+            }
+            leaving.extend(bodies());
+            ends.push(leaving.len());
+            continue;
+        }
+        let mut stepped = zeno.stepped_mut().take_empty();
+        stepped.begin(now, steps.span);
+        for &place in part {
+            stepped.add(region.bodies()[place], accelerations[place]);
+        }
+        for &StepRow { touch, approach, impulse, places, .. } in rows.iter() {
+            if impulse > 0.0 && parts.root(places[0].min(places[1])) == root {
+                stepped.press(Pressed { touch, approach, impulse });
+            }
+        }
+        stepped.sort_pressed();
+        books.note_region_step();
+        let leader = region.bodies()[first];
+        zeno.stepped_mut().put(leader, stepped);
+        for &place in part {
+            let body = region.bodies()[place];
+            move_on(assembly, books, body, (middle[place], shifts[place]), true);
+            assembly.lead(body, leader);
+        }
+        assembly.share_span(leader, now.plus(steps.span));
+    }
+    stepper.parts = parts;
+}
+
+/// Lists the places of a region part by part, each part by its bodies, and counts the contacts of each part, and those that
+/// begin or end to press: the two multiplied are what events would cost that change them one by one.
+fn list_parts(zeno: &Zeno, region: &Region, stepper: &mut Stepper) {
+    let Stepper { rows, parts, places, charges, .. } = stepper;
+    let count = region.bodies().len();
+    charges.clear();
+    charges.resize(count, (0, 0));
+    for row in rows.iter() {
+        let root = parts.root(row.places[0].min(row.places[1]));
+        let pressed = zeno.stepped().ended();
+        let pressed = pressed.binary_search_by_key(&row.touch, |pressed| pressed.touch).is_ok();
+        let (changes, contacts) = &mut charges[root];
+        *changes += usize::from(pressed != (row.impulse > 0.0));
+        *contacts += 1;
+    }
+    places.clear();
+    places.extend(0..count);
+    places.sort_unstable_by_key(|&place| (parts.root(place), region.bodies()[place]));
+}
+
+/// Sets a body off with new velocities, from a place to which it is shifted.
+fn move_on(
+    assembly: &mut Assembly,
+    books: &mut Books,
+    body: BodyId,
+    ([x, y, spin], [u, v, turn]): ([f64; 3], [f64; 3]),
+    coasts: bool,
+) {
+    let now = assembly.now();
+    let before = assembly.trajectory(body).unwound_at(now);
+    let shift = DVec2::new(u, v);
+    let state = BodyState {
+        position: before.position + shift,
+        angle: before.angle + turn,
+        velocity: DVec2::new(x, y),
+        angular_velocity: spin,
+    };
+    let trajectory = assembly.trajectory(body);
+    let work = trajectory.free_motion().acceleration.dot(shift) / trajectory.body().inverse_mass;
+    let change = assembly.kinetic_energy(body, &state) - assembly.kinetic_energy(body, &before);
+    books.book_steps(change - work);
+    if coasts {
+        assembly.trajectory_mut(body).coast_from(now, state);
+    } else {
+        assembly.trajectory_mut(body).fly_from(now, state);
+    }
+}
