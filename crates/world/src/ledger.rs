@@ -129,6 +129,7 @@ mod tests {
             impacts: -2.0,
             captures: -0.5,
             projections: 0.25,
+            steps: 0.0,
             interventions: 10.0,
             damping: -1.0,
             force_laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],

@@ -49,6 +49,7 @@ pub(crate) const FINE: RigidSettings = RigidSettings {
     tolerances: Tolerances { target_gap: FINE_GAP, accuracy: ZONE * FINE_GAP, velocity_tol: FINE_SLOW },
     rest_speed: FINE_REST,
     resolution_time: FINE_SOON,
+    region_steps: None,
     steps: StepControl { local_error: FINE_ERROR, length: 1.0, speed: 1.0, largest_step: None },
     collisions: true,
     projection: true,

@@ -3,7 +3,9 @@
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::books::report::RowForce;
 use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::cutting::cut_groups;
 use crate::rigid::event::impacting::{collect_again, strike};
@@ -17,8 +19,11 @@ use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among};
 use crate::rigid::settings::RegionSteps;
 use crate::rigid::shares::SEVERAL;
+use crate::rigid::stepping::ending::end_step;
 use crate::rigid::stepping::step::step_on;
 use crate::rigid::zeno::budget::charge_event;
+use crate::rigid::zeno::memory::Zeno;
+use crate::rigid::zeno::stepped::Pressed;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState};
 
@@ -26,7 +31,10 @@ use halfgap_collision::{BodyId, BodyState};
 pub(crate) fn handle_step(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
     let Some(steps) = rooms.assembly.settings().region_steps else { return Ok(()) };
     with_work(rooms, Cause::Other, |rooms, work| {
-        work.seed([leader]);
+        let stepped = rooms.zeno.stepped().led_by(leader);
+        work.seed(stepped.into_iter().flat_map(|stepped| stepped.bodies()).copied());
+        let Rooms { assembly, zeno, books, agenda, .. } = &mut *rooms;
+        end_step((assembly, zeno), (books, agenda), leader);
         go_by_steps(rooms, work, steps)
     })
 }
@@ -62,7 +70,9 @@ fn is_plain(assembly: &Assembly, connectors: &Connectors, body: BodyId) -> bool 
 fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<(), AdvanceError> {
     work.region.set_cause(Cause::Other);
     loop {
-        collect_wide(&rooms.view(), &mut work.region, &work.seeds, steps);
+        let longest = rooms.zeno.stepped().longest_next();
+        let span = if longest.is_finite() { longest } else { steps.span };
+        collect_wide(&rooms.view(), &mut work.region, &work.seeds, RegionSteps { span, ..steps });
         if !work.region.is_led() {
             break;
         }
@@ -71,6 +81,7 @@ fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> R
         work.seeds.extend(work.region.bodies());
     }
     let Rooms { assembly, books, zeno, .. } = &mut *rooms;
+    expect_forces(zeno, &books.told().changes().end, steps);
     step_on((assembly, books, zeno), &work.region, &mut work.stepper, steps);
     follow(rooms, &work.region);
     predict_coasting(rooms, &work.region);
@@ -82,6 +93,15 @@ fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> R
         part += 1;
     }
     Ok(())
+}
+
+/// Lets the solves begin with the forces at which contacts were cut.
+fn expect_forces(zeno: &mut Zeno, ended: &[RowForce], steps: RegionSteps) {
+    zeno.stepped_mut().expect(ended.iter().filter_map(|row| {
+        let impulse = 0.5 * steps.span * row.force;
+        let touch = Touch::new(row.bodies, row.features?);
+        (impulse > 0.0).then_some(Pressed { touch, approach: 0.0, impulse, stopped_by: impulse })
+    }));
 }
 
 /// Predicts what bodies meet that have begun a step, and its end.

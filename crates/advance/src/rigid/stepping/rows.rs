@@ -28,6 +28,10 @@ pub(crate) struct StepRow {
     pub(crate) approach: f64,
     /// It is between what touches or has pressed: its rate must not close.
     pub(crate) touches: bool,
+    /// Impulse [N s] in the last step, if it pressed there.
+    pub(crate) pressed: Option<f64>,
+    /// Impulse [N s] that stops it before the step.
+    pub(crate) stopped_by: f64,
     /// Impulse, or displacement, of the problem that is being solved.
     pub(crate) impulse: f64,
     /// The rate must be at least the opposite of this.
@@ -83,8 +87,10 @@ pub(crate) fn list_rows(
             bend: record.motion.kinematics.acceleration(&still, &still),
             elasticity: row.elasticity,
             approach: before.map_or(0.0, |before| before.approach),
+            pressed: before.map(|before| before.impulse),
+            stopped_by: before.map_or(0.0, |before| before.stopped_by),
             touches: before.is_some() || gap <= touching,
-            impulse: before.map_or(0.0, |before| before.impulse),
+            impulse: 0.0,
             offset: 0.0,
         })
     }));

@@ -6,7 +6,7 @@ use crate::rigid::forest::Forest;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::JOINED;
 use crate::rigid::settings::RegionSteps;
-use crate::rigid::shares::{LARGE, MINOR, NEGLIGIBLE};
+use crate::rigid::shares::{LARGE, MINOR};
 use crate::rigid::stepping::rows::{StepRow, list_rows};
 use crate::rigid::stepping::sweeps::sweep;
 use crate::rigid::zeno::budget::charge;
@@ -29,13 +29,26 @@ pub(crate) struct Stepper {
     accelerations: Vec<[f64; 3]>,
     /// Bodies that are in one step.
     parts: Forest,
-    /// Number of contacts of each part that begin or end to press, and of all its contacts; at the root of the part.
-    charges: Vec<(usize, usize)>,
+    /// What happens in each part, at its root.
+    charges: Vec<Charge>,
     /// Places of a region in the order of their parts.
     places: Vec<usize>,
     /// Bodies whose steps are over, part by part, and the ends of the parts.
     leaving: Vec<BodyId>,
     ends: Vec<usize>,
+}
+
+/// What happens in a part: what it costs is its changes times its contacts, as if events made them one by one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Charge {
+    /// Number of contacts that begin or end to press.
+    changes: usize,
+    /// Number of contacts.
+    contacts: usize,
+    /// Largest speed [m/s] at which one of those closed before, or opens now.
+    fastest: f64,
+    /// Largest acceleration [m/s^2] of a gap that presses, at constant velocities.
+    most_bent: f64,
 }
 
 impl Stepper {
@@ -55,13 +68,14 @@ pub(crate) fn step_on(
     stepper: &mut Stepper,
     steps: RegionSteps,
 ) {
+    let span = zeno.stepped().next_span(region.bodies().len()).unwrap_or(steps.span);
     list_rows(assembly, region, zeno.stepped().ended(), MINOR * steps.slack, &mut stepper.rows);
     read_motions(assembly, region, stepper);
     stop_closing(stepper, steps);
     find_parts(region, stepper, steps);
-    find_middle(stepper, steps);
+    find_middle(stepper, span, residual(steps));
     find_shifts(stepper, steps);
-    set_off((assembly, books, zeno), region, stepper, steps);
+    set_off((assembly, books, zeno), region, stepper, (steps, span));
 }
 
 fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
@@ -76,9 +90,9 @@ fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
     stepper.accelerations.push([0.0; 3]);
 }
 
-/// Residual [m/s] of sweeps: in a step it moves a gap by a negligible part of the slack.
+/// Residual [m/s] of sweeps: in a step it moves a gap by a minor part of the slack.
 fn residual(steps: RegionSteps) -> f64 {
-    NEGLIGIBLE * steps.slow()
+    MINOR * steps.slow()
 }
 
 /// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
@@ -88,7 +102,10 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) {
     let (mut any_closes, mut any_rebounds, mut brought) = (false, false, 0.0);
     for row in rows.iter_mut().filter(|row| row.touches) {
         let rate = row.rate(velocities);
-        row.approach = row.approach.max(-rate);
+        if row.pressed.is_none() {
+            row.approach = -rate;
+        }
+        row.impulse = row.stopped_by;
         let is_fast = row.approach > steps.slow();
         row.offset = if is_fast { -row.elasticity * row.approach } else { 0.0 };
         any_closes |= rate + row.offset < 0.0;
@@ -112,6 +129,9 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) {
         }
         sweep(rows, velocities, residual(steps), |row| row.touches);
     }
+    for row in rows.iter_mut() {
+        row.stopped_by = row.impulse;
+    }
 }
 
 /// Joins the bodies that touch.
@@ -127,19 +147,20 @@ fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
     }
 }
 
-/// Finds the velocities in the middle of the step, at which no gap falls below its target.
-fn find_middle(stepper: &mut Stepper, steps: RegionSteps) {
+/// Finds the velocities in the middle of a step of a length `span` [s], at which no gap falls below its target.
+fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
     let Stepper { rows, velocities, middle, accelerations, .. } = stepper;
-    let half = 0.5 * steps.span;
+    let half = 0.5 * span;
     middle.clear();
     middle.extend(velocities.iter().zip(accelerations).map(|(velocity, acceleration)| {
         [0, 1, 2].map(|k: usize| velocity[k] + half * acceleration[k])
     }));
     for row in rows.iter_mut() {
         row.approach = (-row.rate(velocities)).max(0.0);
-        row.offset = row.gap.max(0.0) / steps.span + half * row.bend;
+        row.offset = row.gap.max(0.0) / span + half * row.bend;
+        row.impulse = row.pressed.unwrap_or(row.stopped_by);
     }
-    sweep(rows, middle, residual(steps), |_| true);
+    sweep(rows, middle, residual, |_| true);
 }
 
 /// Finds the displacements that bring what overlaps back to its target, if any overlaps by more than a minor part of the slack. They
@@ -172,9 +193,9 @@ fn set_off(
     (assembly, books, zeno): (&mut Assembly, &mut Books, &mut Zeno),
     region: &Region,
     stepper: &mut Stepper,
-    steps: RegionSteps,
+    (steps, span): (RegionSteps, f64),
 ) {
-    list_parts(zeno, region, stepper);
+    list_parts(region, stepper);
     let now = assembly.now();
     let mut parts = std::mem::take(&mut stepper.parts);
     let Stepper { rows, velocities, middle, shifts, accelerations, charges, places, leaving, ends, .. } = stepper;
@@ -186,7 +207,7 @@ fn set_off(
         let length = rest.iter().take_while(|&&place| parts.root(place) == root).count();
         let (part, others) = rest.split_at(length);
         rest = others;
-        let (changes, contacts) = charges[root];
+        let Charge { changes, contacts, fastest, most_bent } = charges[root];
         let units = (changes * contacts) as f64;
         let bodies = || part.iter().map(|&place| region.bodies()[place]);
         // A body that touches nothing has nothing to step for.
@@ -201,13 +222,13 @@ fn set_off(
             continue;
         }
         let mut stepped = zeno.stepped_mut().take_empty();
-        stepped.begin(now, steps.span);
+        stepped.begin(now, [span, next_span(steps, span, [fastest, most_bent])]);
         for &place in part {
             stepped.add(region.bodies()[place], accelerations[place]);
         }
-        for &StepRow { touch, approach, impulse, places, .. } in rows.iter() {
+        for &StepRow { touch, approach, impulse, stopped_by, places, .. } in rows.iter() {
             if impulse > 0.0 && parts.root(places[0].min(places[1])) == root {
-                stepped.press(Pressed { touch, approach, impulse });
+                stepped.press(Pressed { touch, approach, impulse, stopped_by });
             }
         }
         stepped.sort_pressed();
@@ -219,29 +240,47 @@ fn set_off(
             move_on(assembly, books, body, (middle[place], shifts[place]), true);
             assembly.lead(body, leader);
         }
-        assembly.share_span(leader, now.plus(steps.span));
+        assembly.share_span(leader, now.plus(span));
     }
     stepper.parts = parts;
 }
 
-/// Lists the places of a region part by part, each part by its bodies, and counts the contacts of each part, and those that
-/// begin or end to press: the two multiplied are what events would cost that change them one by one.
-fn list_parts(zeno: &Zeno, region: &Region, stepper: &mut Stepper) {
-    let Stepper { rows, parts, places, charges, .. } = stepper;
+/// Lists the places of a region part by part, each part by its bodies, and what happens in each part.
+fn list_parts(region: &Region, stepper: &mut Stepper) {
+    let Stepper { rows, middle, parts, places, charges, .. } = stepper;
     let count = region.bodies().len();
     charges.clear();
-    charges.resize(count, (0, 0));
+    charges.resize(count, Charge::default());
     for row in rows.iter() {
-        let root = parts.root(row.places[0].min(row.places[1]));
-        let pressed = zeno.stepped().ended();
-        let pressed = pressed.binary_search_by_key(&row.touch, |pressed| pressed.touch).is_ok();
-        let (changes, contacts) = &mut charges[root];
-        *changes += usize::from(pressed != (row.impulse > 0.0));
+        let Charge { changes, contacts, fastest, most_bent } =
+            &mut charges[parts.root(row.places[0].min(row.places[1]))];
         *contacts += 1;
+        if row.impulse > 0.0 {
+            *most_bent = most_bent.max(row.bend.abs());
+        }
+        if row.pressed.is_some() != (row.impulse > 0.0) {
+            *changes += 1;
+            *fastest = fastest.max(row.approach).max(row.rate(middle));
+        }
     }
     places.clear();
     places.extend(0..count);
     places.sort_unstable_by_key(|&place| (parts.root(place), region.bodies()[place]));
+}
+
+/// Length [s] of the step after one of a length `span`, in which contacts that close or open at up to a speed `fastest` [m/s]
+/// began or ended to press, and gaps at constant velocities accelerate by up to `most_bent` [m/s^2]: contacts may begin or end at any time of the step, and
+/// bodies coast straight on; neither should lead them farther than the slack.
+fn next_span(steps: RegionSteps, span: f64, [fastest, most_bent]: [f64; 2]) -> f64 {
+    let longest = LARGE * steps.span;
+    let mut wanted = longest;
+    if fastest > 0.0 {
+        wanted = wanted.min(steps.slack / fastest);
+    }
+    if most_bent > 0.0 {
+        wanted = wanted.min((8.0 * steps.slack / most_bent).sqrt());
+    }
+    wanted.min(2.0 * span).clamp(steps.span, longest)
 }
 
 /// Sets a body off with new velocities, from a place to which it is shifted.

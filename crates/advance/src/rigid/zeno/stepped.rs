@@ -17,6 +17,8 @@ pub(crate) struct Stepped {
     pub(super) start: Time,
     /// Length [s] of the step.
     pub(super) span: f64,
+    /// Length [s] that the next step may have.
+    pub(super) next_span: f64,
 }
 
 /// A contact that presses in a step.
@@ -28,6 +30,8 @@ pub(crate) struct Pressed {
     pub(crate) approach: f64,
     /// Impulse [N s] that keeps the gap from going below its target in the step.
     pub(crate) impulse: f64,
+    /// Impulse [N s] that stopped it before the step.
+    pub(crate) stopped_by: f64,
 }
 
 impl Stepped {
@@ -49,12 +53,12 @@ impl Stepped {
         time.since(self.start) - 0.5 * self.span
     }
 
-    /// Begins a step without bodies.
-    pub(crate) fn begin(&mut self, start: Time, span: f64) {
+    /// Begins a step without bodies, given its length [s] and that of the next.
+    pub(crate) fn begin(&mut self, start: Time, [span, next_span]: [f64; 2]) {
         self.bodies.clear();
         self.accelerations.clear();
         self.pressed.clear();
-        (self.start, self.span) = (start, span);
+        (self.start, self.span, self.next_span) = (start, span, next_span);
     }
 
     /// Adds a body, greater than those before.
@@ -82,6 +86,10 @@ pub(crate) struct AllStepped {
     /// Contacts that pressed in the steps that the present event has ended.
     #[cfg_attr(feature = "save", serde(skip))]
     ended: Vec<Pressed>,
+    /// Number of bodies in the steps that the present event has ended, and the least length [s] of the next step that they
+    /// allow.
+    #[cfg_attr(feature = "save", serde(skip))]
+    of_ended: (usize, f64),
     /// Emptied ones, to be used again.
     #[cfg_attr(feature = "save", serde(skip))]
     #[expect(clippy::vec_box, reason = "they go from here to `by_leader` without being copied")]
@@ -117,10 +125,31 @@ impl AllStepped {
     /// Begins an event, which has ended no step yet.
     pub(crate) fn begin_event(&mut self) {
         self.ended.clear();
+        self.of_ended = (0, f64::INFINITY);
+    }
+
+    /// Adds contacts that forces have pressed until now, to those that pressed in steps.
+    pub(crate) fn expect(&mut self, pressed: impl Iterator<Item = Pressed>) {
+        self.ended.extend(pressed);
+        self.ended.sort_unstable_by_key(|pressed| pressed.touch);
+        self.ended.dedup_by_key(|pressed| pressed.touch);
+    }
+
+    /// Length [s] of the next step that the steps allow which the present event has ended.
+    pub(crate) fn longest_next(&self) -> f64 {
+        self.of_ended.1
+    }
+
+    /// Length [s] of the next step of so many bodies, if all of them were in steps that the present event has ended.
+    pub(crate) fn next_span(&self, bodies: usize) -> Option<f64> {
+        let (count, span) = self.of_ended;
+        (count == bodies).then_some(span)
     }
 
     /// Notes what pressed in a step that ends now, and keeps its buffers.
     pub(crate) fn end(&mut self, stepped: Box<Stepped>) {
+        let (count, span) = self.of_ended;
+        self.of_ended = (count + stepped.bodies.len(), span.min(stepped.next_span));
         self.ended.extend_from_slice(&stepped.pressed);
         self.ended.sort_unstable_by_key(|pressed| pressed.touch);
         self.recycle(stepped);
