@@ -6,6 +6,7 @@ use crate::rigid::region::collecting::collect_mates;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::settings::RegionSteps;
+use crate::rigid::shares::LARGE;
 use halfgap_collision::{BodyId, Collision, Moment, Moving, Tolerances, detect_features_of_pair};
 
 /// Bodies farther apart than this multiple of the slack of a step are not in one region [-]: half of it lets a body that
@@ -86,8 +87,11 @@ fn collect_near(
             return false;
         }
     }
-    // A record is made of features up to twice the target gap apart.
-    let tolerances = Tolerances { target_gap: margin + target_gap, ..assembly.settings().tolerances };
+    // A record is made of features up to twice the target gap apart. A corner that does not lie lowest yet may do so within the
+    // step; what lies deeper than a step may be off lies on the far side of a corner.
+    let tolerances =
+        Tolerances { target_gap: margin + target_gap, accuracy: margin, ..assembly.settings().tolerances };
+    let depth = LARGE * steps.slack;
     let mut moments = sides.map(|(id, moving)| Moment { id, body: assembly.trajectory(id).body(), moving });
     // The lesser body first: records do not depend on which of the two was found first.
     if moments[1].id < moments[0].id {
@@ -95,7 +99,11 @@ fn collect_near(
     }
     let first = region.records.len();
     let [a, b] = &moments;
-    detect_features_of_pair(a, b, &tolerances, margin + target_gap, now.seconds(), &mut region.records);
+    let mut fresh = std::mem::take(&mut region.fresh);
+    fresh.clear();
+    detect_features_of_pair(a, b, &tolerances, depth, now.seconds(), &mut fresh);
+    region.records.extend(fresh.extract_if(.., |record| record.geometry.outside <= JOINED * steps.slack));
+    region.fresh = fresh;
     let touches = |record: &Collision| record.geometry.distance - target_gap <= JOINED * steps.slack;
     region.records[first..].iter().any(touches)
 }

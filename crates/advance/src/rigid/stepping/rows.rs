@@ -10,6 +10,8 @@ use halfgap_collision::BodyAcceleration;
 /// A contact of a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepRow {
+    /// Index of its record in the region.
+    pub(crate) record: usize,
     pub(crate) touch: Touch,
     /// Places of its primary and its normal body; that of what cannot move is behind the last.
     pub(crate) places: [usize; 2],
@@ -71,13 +73,14 @@ pub(crate) fn list_rows(
     let still = BodyAcceleration::default();
     let behind = region.bodies().len();
     rows.clear();
-    rows.extend(region.records().iter().filter_map(|record| {
+    rows.extend(region.records().iter().enumerate().filter_map(|(index, record)| {
         let touch = Touch::of(record)?;
         let row = row_of(assembly, record);
         let compliance = row.coupling(&row);
         let before = pressed.binary_search_by_key(&touch, |before| before.touch).ok().map(|at| pressed[at]);
         let gap = record.geometry.distance - target_gap;
         (compliance > 0.0).then(|| StepRow {
+            record: index,
             touch,
             places: row.bodies.map(|body| region.place(body).unwrap_or(behind)),
             jacobian: row.jacobian,
@@ -94,4 +97,12 @@ pub(crate) fn list_rows(
             offset: 0.0,
         })
     }));
+}
+
+/// Sets the accelerations of gaps at constant velocities to those of the records, measured anew, from which the rows were listed.
+pub(crate) fn bend_anew(region: &Region, rows: &mut [StepRow]) {
+    let still = BodyAcceleration::default();
+    for row in rows {
+        row.bend = region.records()[row.record].motion.kinematics.acceleration(&still, &still);
+    }
 }

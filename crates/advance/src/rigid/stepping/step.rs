@@ -2,13 +2,15 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
+use crate::rigid::connectors::store::Connectors;
 use crate::rigid::forest::Forest;
+use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::JOINED;
 use crate::rigid::settings::RegionSteps;
 use crate::rigid::shares::{LARGE, MINOR};
-use crate::rigid::stepping::rows::{StepRow, list_rows};
-use crate::rigid::stepping::sweeps::sweep;
+use crate::rigid::stepping::rows::{StepRow, bend_anew, list_rows};
+use crate::rigid::stepping::sweeps::{Exact, solve};
 use crate::rigid::zeno::budget::charge;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::stepped::Pressed;
@@ -19,6 +21,7 @@ use halfgap_collision::{BodyId, BodyState};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stepper {
     pub(super) rows: Vec<StepRow>,
+    exact: Exact,
     /// Velocities (x, y, angle) of the bodies of the region, and of what cannot move.
     velocities: Vec<[f64; 3]>,
     /// Velocities in the middle of the step.
@@ -47,8 +50,6 @@ struct Charge {
     contacts: usize,
     /// Largest speed [m/s] at which one of those closed before, or opens now.
     fastest: f64,
-    /// Largest acceleration [m/s^2] of a gap that presses, at constant velocities.
-    most_bent: f64,
 }
 
 impl Stepper {
@@ -63,24 +64,52 @@ impl Stepper {
 /// Brings the bodies of a region, which are in flight and were collected for a step, to velocities at which nothing
 /// closes, and lets those that go on by steps coast. Others are left in flight; [`Stepper::leaving`] lists them.
 pub(crate) fn step_on(
-    (assembly, books, zeno): (&mut Assembly, &mut Books, &mut Zeno),
-    region: &Region,
+    (assembly, connectors): (&mut Assembly, &Connectors),
+    (books, zeno): (&mut Books, &mut Zeno),
+    region: &mut Region,
     stepper: &mut Stepper,
     steps: RegionSteps,
 ) {
-    let span = zeno.stepped().next_span(region.bodies().len()).unwrap_or(steps.span);
+    let proposed = zeno.stepped().next_span(region.bodies().len()).unwrap_or(steps.span);
     list_rows(assembly, region, zeno.stepped().ended(), MINOR * steps.slack, &mut stepper.rows);
     read_motions(assembly, region, stepper);
-    stop_closing(stepper, steps);
+    if stop_closing(stepper, steps) {
+        // How gaps bend depends on the velocities.
+        for (place, &body) in region.bodies().iter().enumerate() {
+            let motion = (stepper.velocities[place], [0.0; 3]);
+            move_on(assembly, books, body, motion, false);
+        }
+        remeasure(assembly, connectors, region, assembly.now());
+        bend_anew(region, &mut stepper.rows);
+    }
+    let span = straight_span(&stepper.rows, proposed, steps);
     find_parts(region, stepper, steps);
     find_middle(stepper, span, residual(steps));
     find_shifts(stepper, steps);
+    if std::env::var_os("TRACE").is_some() {
+        for r in stepper.rows.iter().filter(|r| r.touch.bodies == [BodyId(0), BodyId(1)]) { eprintln!("  ROW {:?} gap {:e} rate {:e} end {:e} imp {:e}", r.touch.features, r.gap, r.rate(&stepper.middle), r.gap + span * r.rate(&stepper.middle), r.impulse); }
+        let d = stepper.rows.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
+        let end = stepper.rows.iter().map(|r| (r.gap + span * r.rate(&stepper.middle), r)).min_by(|a, b| a.0.total_cmp(&b.0));
+        eprintln!("ST {:.6} n {} rows {} span {:e} deepest {:?} shift {:e} predicted end {:?}", assembly.now().seconds(), region.bodies().len(), stepper.rows.len(), span, d.map(|r| (r.gap, r.touch.bodies, r.touch.features)), stepper.shifts.iter().map(|s| s[0].hypot(s[1])).fold(0.0, f64::max), end.map(|(g, r)| (g, r.gap, r.touch.bodies, r.rate(&stepper.middle), r.bend, r.impulse)));
+    }
+    if std::env::var_os("TRACE").is_some() {
+        let b = region.bodies();
+        for i in 0..b.len() { for j in 0..i {
+            let (p, q) = (assembly.trajectory(b[i]).unwound_at(assembly.now()).position, assembly.trajectory(b[j]).unwound_at(assembly.now()).position);
+            let (u, v) = (stepper.middle[i], stepper.middle[j]);
+            let g0 = (p - q).length() - 0.6;
+            let g1 = (p - q + span * DVec2::new(u[0] - v[0], u[1] - v[1])).length() - 0.6;
+            if g1 < -1e-5 || g0 < -1e-5 { eprintln!("BAD {:.9} {:?} {:?} gap {:e} -> {:e} span {:e} row {:?}", assembly.now().seconds(), b[i], b[j], g0, g1, span, stepper.rows.iter().filter(|r| r.touch.bodies == crate::rigid::contacts::touch::sorted(b[i], b[j])).map(|r| (r.gap, r.rate(&stepper.middle), r.impulse)).collect::<Vec<_>>()); }
+        } }
+    }
     set_off((assembly, books, zeno), region, stepper, (steps, span));
 }
 
 fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
     let now = assembly.now();
     let states = region.bodies().iter().map(|&body| assembly.trajectory(body).unwound_at(now));
+    stepper.exact.inertias.clear();
+    stepper.exact.inertias.extend(region.bodies().iter().map(|&body| assembly.inertia(body)));
     stepper.velocities.clear();
     stepper.velocities.extend(states.map(|state| [state.velocity.x, state.velocity.y, state.angular_velocity]));
     stepper.velocities.push([0.0; 3]);
@@ -96,10 +125,10 @@ fn residual(steps: RegionSteps) -> f64 {
 }
 
 /// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
-/// have brought.
-fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) {
-    let Stepper { rows, velocities, shifts, .. } = stepper;
-    let (mut any_closes, mut any_rebounds, mut brought) = (false, false, 0.0);
+/// have brought. True if any has come fast.
+fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> bool {
+    let Stepper { rows, velocities, shifts, exact, .. } = stepper;
+    let (mut any_closes, mut any_fast, mut brought) = (false, false, 0.0);
     for row in rows.iter_mut().filter(|row| row.touches) {
         let rate = row.rate(velocities);
         if row.pressed.is_none() {
@@ -109,29 +138,30 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) {
         let is_fast = row.approach > steps.slow();
         row.offset = if is_fast { -row.elasticity * row.approach } else { 0.0 };
         any_closes |= rate + row.offset < 0.0;
-        any_rebounds |= row.offset < 0.0;
+        any_fast |= is_fast;
         brought += 0.5 * row.approach * row.approach / row.compliance;
     }
     if !any_closes {
-        return;
+        return false;
     }
     let before = &mut *shifts;
     before.clone_from(velocities);
-    sweep(rows, velocities, residual(steps), |row| row.touches);
+    solve(exact, rows, velocities, residual(steps), |row| row.touches);
     // The energy that impulses give is their work at the mean of the rates before and after.
     let given = |rows: &[StepRow], velocities: &[[f64; 3]]| -> f64 {
         rows.iter().map(|row| 0.5 * row.impulse * (row.rate(before) + row.rate(velocities))).sum()
     };
-    if any_rebounds && given(rows, velocities) > brought {
+    if any_fast && given(rows, velocities) > brought {
         velocities.clone_from(before);
         for row in rows.iter_mut() {
             row.offset = 0.0;
         }
-        sweep(rows, velocities, residual(steps), |row| row.touches);
+        solve(exact, rows, velocities, residual(steps), |row| row.touches);
     }
     for row in rows.iter_mut() {
         row.stopped_by = row.impulse;
     }
+    any_fast
 }
 
 /// Joins the bodies that touch.
@@ -149,7 +179,7 @@ fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
 
 /// Finds the velocities in the middle of a step of a length `span` [s], at which no gap falls below its target.
 fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
-    let Stepper { rows, velocities, middle, accelerations, .. } = stepper;
+    let Stepper { rows, velocities, middle, accelerations, exact, .. } = stepper;
     let half = 0.5 * span;
     middle.clear();
     middle.extend(velocities.iter().zip(accelerations).map(|(velocity, acceleration)| {
@@ -160,13 +190,13 @@ fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
         row.offset = row.gap.max(0.0) / span + half * row.bend;
         row.impulse = row.pressed.unwrap_or(row.stopped_by);
     }
-    sweep(rows, middle, residual, |_| true);
+    solve(exact, rows, middle, residual, |_| true);
 }
 
 /// Finds the displacements that bring what overlaps back to its target, if any overlaps by more than a minor part of the slack. They
 /// go no farther than a small multiple of that overlap.
 fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
-    let Stepper { rows, middle, shifts, .. } = stepper;
+    let Stepper { rows, middle, shifts, exact, .. } = stepper;
     shifts.clear();
     shifts.resize(middle.len(), [0.0; 3]);
     let deepest = rows.iter().map(|row| row.gap).fold(0.0, f64::min);
@@ -178,7 +208,7 @@ fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
     for row in rows.iter_mut() {
         (row.impulse, row.offset) = (0.0, row.gap);
     }
-    sweep(rows, shifts, MINOR * MINOR * steps.slack, |row| row.gap <= JOINED * steps.slack);
+    solve(exact, rows, shifts, MINOR * MINOR * steps.slack, |row| row.gap <= JOINED * steps.slack);
     let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
     if farthest > -LARGE * deepest {
         shifts.fill([0.0; 3]);
@@ -207,7 +237,7 @@ fn set_off(
         let length = rest.iter().take_while(|&&place| parts.root(place) == root).count();
         let (part, others) = rest.split_at(length);
         rest = others;
-        let Charge { changes, contacts, fastest, most_bent } = charges[root];
+        let Charge { changes, contacts, fastest} = charges[root];
         let units = (changes * contacts) as f64;
         let bodies = || part.iter().map(|&place| region.bodies()[place]);
         // A body that touches nothing has nothing to step for.
@@ -222,7 +252,7 @@ fn set_off(
             continue;
         }
         let mut stepped = zeno.stepped_mut().take_empty();
-        stepped.begin(now, [span, next_span(steps, span, [fastest, most_bent])]);
+        stepped.begin(now, [span, next_span(steps, span, fastest)]);
         for &place in part {
             stepped.add(region.bodies()[place], accelerations[place]);
         }
@@ -252,12 +282,9 @@ fn list_parts(region: &Region, stepper: &mut Stepper) {
     charges.clear();
     charges.resize(count, Charge::default());
     for row in rows.iter() {
-        let Charge { changes, contacts, fastest, most_bent } =
+        let Charge { changes, contacts, fastest } =
             &mut charges[parts.root(row.places[0].min(row.places[1]))];
         *contacts += 1;
-        if row.impulse > 0.0 {
-            *most_bent = most_bent.max(row.bend.abs());
-        }
         if row.pressed.is_some() != (row.impulse > 0.0) {
             *changes += 1;
             *fastest = fastest.max(row.approach).max(row.rate(middle));
@@ -269,18 +296,20 @@ fn list_parts(region: &Region, stepper: &mut Stepper) {
 }
 
 /// Length [s] of the step after one of a length `span`, in which contacts that close or open at up to a speed `fastest` [m/s]
-/// began or ended to press, and gaps at constant velocities accelerate by up to `most_bent` [m/s^2]: contacts may begin or end at any time of the step, and
-/// bodies coast straight on; neither should lead them farther than the slack.
-fn next_span(steps: RegionSteps, span: f64, [fastest, most_bent]: [f64; 2]) -> f64 {
+/// began or ended to press: they may do so at any time of the step, and should not go farther meanwhile than the slack.
+fn next_span(steps: RegionSteps, span: f64, fastest: f64) -> f64 {
     let longest = LARGE * steps.span;
-    let mut wanted = longest;
-    if fastest > 0.0 {
-        wanted = wanted.min(steps.slack / fastest);
-    }
-    if most_bent > 0.0 {
-        wanted = wanted.min((8.0 * steps.slack / most_bent).sqrt());
-    }
+    let wanted = if fastest > 0.0 { steps.slack / fastest } else { longest };
     wanted.min(2.0 * span).clamp(steps.span, longest)
+}
+
+/// Length [s] of a step, at most that proposed, in which contacts that press bend off the straight ways of their bodies by no more than the
+/// slack; no less than the least length.
+fn straight_span(rows: &[StepRow], proposed: f64, steps: RegionSteps) -> f64 {
+    let pressing = rows.iter().filter(|row| row.touches);
+    let most = pressing.map(|row| row.bend.abs()).fold(0.0, f64::max);
+    let straight = if most > 0.0 { (8.0 * steps.slack / most).sqrt() } else { proposed };
+    proposed.min(straight).max(steps.span)
 }
 
 /// Sets a body off with new velocities, from a place to which it is shifted.
