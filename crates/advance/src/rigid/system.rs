@@ -25,7 +25,7 @@ use crate::rigid::parts::{RigidParts, check_bodies_of_force_law};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::RemedyCounts;
 use crate::rigid::settings::RigidSettings;
-use crate::rigid::shares::LARGE;
+use crate::rigid::shares::NEGLIGIBLE;
 use crate::rigid::sinking::depth::room_to_sink;
 use crate::rigid::stepping::ending::work_within;
 use crate::system::EventDriven;
@@ -188,7 +188,7 @@ impl RigidSystem {
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         let assembly = &self.rooms.assembly;
         let steps = assembly.settings().region_steps.filter(|_| assembly.share_step(bodies));
-        room_to_sink(assembly, bodies) + steps.map_or(0.0, |steps| LARGE * steps.slack)
+        room_to_sink(assembly, bodies) + steps.map_or(0.0, |_| NEGLIGIBLE * bodies.map(|b| assembly.trajectory(b).reach()).into_iter().fold(f64::INFINITY, f64::min))
     }
 
     /// Evaluates the forces of all active rows at a time within the present segments. Allocates.

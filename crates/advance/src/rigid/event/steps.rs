@@ -29,7 +29,6 @@ use halfgap_collision::{BodyId, BodyState};
 
 /// Handles the end of the step that a body leads.
 pub(crate) fn handle_step(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
-    dbg(rooms, "due");
     let Some(steps) = rooms.assembly.settings().region_steps else { return Ok(()) };
     with_work(rooms, Cause::Other, |rooms, work| {
         let stepped = rooms.zeno.stepped().led_by(leader);
@@ -86,7 +85,6 @@ fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> R
     step_on((assembly, connectors), (books, zeno), &mut work.region, &mut work.stepper, steps);
     follow(rooms, &work.region);
     predict_coasting(rooms, &work.region);
-    dbg(rooms, "stepped");
     let mut part = 0;
     while let Some(bodies) = work.stepper.leaving(part) {
         work.seeds.clear();
@@ -142,7 +140,6 @@ fn leave(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<
     work.region.set_accumulating(true);
     let outcome = strike(rooms, work);
     work.region.set_accumulating(false);
-    dbg(rooms, "left");
     outcome
 }
 
@@ -152,7 +149,6 @@ fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) 
     collect_wide_among(&rooms.view(), &mut work.region, &work.seeds, steps);
     let EventWork { region, settling, lift, .. } = work;
     let assembly = &mut rooms.assembly;
-    if std::env::var_os("TRACE").is_some() && work.seeds.iter().any(|b| b.0 == 35 || b.0 == 45) { eprintln!("BRING {:?} {}", work.seeds, region.records().len()); }
     pose_displacement(assembly, region, lift, steps);
     if lift.rows.is_empty() || settling.solve(&lift.problem).is_err() {
         return;
@@ -175,18 +171,7 @@ fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) 
         assembly.trajectory_mut(body).fly_from(now, moved);
     }
     follow(rooms, &work.region);
-    dbg(rooms, "brought");
 }
-fn dbg(rooms: &Rooms, w: &str) {
-    if std::env::var_os("TRACE").is_some() {
-        let p = |b: u32| rooms.assembly.trajectory(BodyId(b)).unwound_at(rooms.assembly.now());
-        let (a, b) = (p(35), p(45));
-        let g = (a.position - b.position).length() - 0.6;
-        let n = (a.position - b.position).normalize();
-        if g < 1e-4 { eprintln!("W {w} {:.9} gap {:e} rate {:e} lead {:?} pred {:?}", rooms.assembly.now().seconds(), g, (a.velocity - b.velocity).dot(n), [35, 45].map(|b| rooms.assembly.leader_of()[b]), rooms.pairs.between(BodyId(35), BodyId(45)).map(|p| (rooms.pairs.get(p).prediction(), rooms.pairs.get(p).clear().seconds(), rooms.pairs.get(p).has_rules()))); }
-    }
-}
-
 /// Tells the search how the bodies of a region move now.
 fn follow(rooms: &mut Rooms, region: &Region) {
     for &body in region.bodies() {

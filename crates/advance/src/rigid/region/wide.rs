@@ -6,8 +6,9 @@ use crate::rigid::region::collecting::collect_mates;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::settings::RegionSteps;
-use crate::rigid::shares::LARGE;
+use crate::rigid::shares::{LARGE, SMALL};
 use halfgap_collision::{BodyId, Collision, Moment, Moving, Tolerances, detect_features_of_pair};
+use halfgap_geometry::FeatureId;
 
 /// Bodies farther apart than this multiple of the slack of a step are not in one region [-]: half of it lets a body that
 /// lies on another come off by rounding, and half is the fall within a step.
@@ -63,6 +64,11 @@ fn collect(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: Region
     region.records = records;
 }
 
+/// The features of a record, that of its primary body first.
+fn features_of(record: &Collision) -> [Option<FeatureId>; 2] {
+    [record.parties.primary.feature(), record.parties.normal.feature()]
+}
+
 /// Adds the records of two bodies that may touch within a step; true if they touch now, within its slack.
 fn collect_near(
     assembly: &Assembly,
@@ -91,7 +97,8 @@ fn collect_near(
     // step; what lies deeper than a step may be off lies on the far side of a corner.
     let tolerances =
         Tolerances { target_gap: margin + target_gap, accuracy: margin, ..assembly.settings().tolerances };
-    let depth = LARGE * steps.slack;
+    let least_reach = sides.iter().map(|&(body, _)| assembly.trajectory(body).reach()).fold(f64::INFINITY, f64::min);
+    let depth = SMALL * least_reach;
     let mut moments = sides.map(|(id, moving)| Moment { id, body: assembly.trajectory(id).body(), moving });
     // The lesser body first: records do not depend on which of the two was found first.
     if moments[1].id < moments[0].id {
@@ -102,8 +109,26 @@ fn collect_near(
     let mut fresh = std::mem::take(&mut region.fresh);
     fresh.clear();
     detect_features_of_pair(a, b, &tolerances, depth, now.seconds(), &mut fresh);
-    region.records.extend(fresh.extract_if(.., |record| record.geometry.outside <= JOINED * steps.slack));
+    fresh.retain(|record| record.geometry.outside <= JOINED * steps.slack);
+    let sunk = |record: &Collision| record.geometry.distance < target_gap - LARGE * steps.slack;
+    for index in (0..fresh.len()).rev() {
+        // A corner, or a disc, touches the side from which it is farthest: seen from the others it only lies behind them.
+        let own = features_of(&fresh[index]);
+        let is_nearer = |other: &Collision| {
+            let theirs = features_of(other);
+            (own[0] == theirs[0] || own[1] == theirs[1])
+                && other.geometry.distance > fresh[index].geometry.distance
+        };
+        if sunk(&fresh[index]) && fresh.iter().any(is_nearer) {
+            fresh.remove(index);
+        }
+    }
+    region.records.append(&mut fresh);
     region.fresh = fresh;
-    let touches = |record: &Collision| record.geometry.distance - target_gap <= JOINED * steps.slack;
+    // What will touch within the step belongs to it, too: it would be cut short when that happens.
+    let touches = |record: &Collision| {
+        let gap = record.geometry.distance - target_gap;
+        gap <= JOINED * steps.slack || gap + steps.span * record.motion.normal_velocity <= 0.0
+    };
     region.records[first..].iter().any(touches)
 }

@@ -34,6 +34,11 @@ pub(crate) struct StepRow {
     pub(crate) pressed: Option<f64>,
     /// Impulse [N s] that stops it before the step.
     pub(crate) stopped_by: f64,
+    /// It takes part in the problem that is being solved.
+    pub(crate) acts: bool,
+    /// Impulse before the present sweep, and change of it along which the next one begins.
+    pub(crate) before: f64,
+    pub(crate) direction: f64,
     /// Impulse, or displacement, of the problem that is being solved.
     pub(crate) impulse: f64,
     /// The rate must be at least the opposite of this.
@@ -94,6 +99,9 @@ pub(crate) fn list_rows(
             stopped_by: before.map_or(0.0, |before| before.stopped_by),
             touches: before.is_some() || gap <= touching,
             impulse: 0.0,
+            acts: false,
+            before: 0.0,
+            direction: 0.0,
             offset: 0.0,
         })
     }));

@@ -10,7 +10,7 @@ use crate::rigid::region::wide::JOINED;
 use crate::rigid::settings::RegionSteps;
 use crate::rigid::shares::{LARGE, MINOR};
 use crate::rigid::stepping::rows::{StepRow, bend_anew, list_rows};
-use crate::rigid::stepping::sweeps::{Exact, solve};
+use crate::rigid::stepping::sweeps::sweep;
 use crate::rigid::zeno::budget::charge;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::stepped::Pressed;
@@ -21,7 +21,6 @@ use halfgap_collision::{BodyId, BodyState};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stepper {
     pub(super) rows: Vec<StepRow>,
-    exact: Exact,
     /// Velocities (x, y, angle) of the bodies of the region, and of what cannot move.
     velocities: Vec<[f64; 3]>,
     /// Velocities in the middle of the step.
@@ -83,33 +82,15 @@ pub(crate) fn step_on(
         bend_anew(region, &mut stepper.rows);
     }
     let span = straight_span(&stepper.rows, proposed, steps);
-    find_parts(region, stepper, steps);
     find_middle(stepper, span, residual(steps));
+    find_parts(region, stepper, steps);
     find_shifts(stepper, steps);
-    if std::env::var_os("TRACE").is_some() {
-        for r in stepper.rows.iter().filter(|r| r.touch.bodies == [BodyId(0), BodyId(1)]) { eprintln!("  ROW {:?} gap {:e} rate {:e} end {:e} imp {:e}", r.touch.features, r.gap, r.rate(&stepper.middle), r.gap + span * r.rate(&stepper.middle), r.impulse); }
-        let d = stepper.rows.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
-        let end = stepper.rows.iter().map(|r| (r.gap + span * r.rate(&stepper.middle), r)).min_by(|a, b| a.0.total_cmp(&b.0));
-        eprintln!("ST {:.6} n {} rows {} span {:e} deepest {:?} shift {:e} predicted end {:?}", assembly.now().seconds(), region.bodies().len(), stepper.rows.len(), span, d.map(|r| (r.gap, r.touch.bodies, r.touch.features)), stepper.shifts.iter().map(|s| s[0].hypot(s[1])).fold(0.0, f64::max), end.map(|(g, r)| (g, r.gap, r.touch.bodies, r.rate(&stepper.middle), r.bend, r.impulse)));
-    }
-    if std::env::var_os("TRACE").is_some() {
-        let b = region.bodies();
-        for i in 0..b.len() { for j in 0..i {
-            let (p, q) = (assembly.trajectory(b[i]).unwound_at(assembly.now()).position, assembly.trajectory(b[j]).unwound_at(assembly.now()).position);
-            let (u, v) = (stepper.middle[i], stepper.middle[j]);
-            let g0 = (p - q).length() - 0.6;
-            let g1 = (p - q + span * DVec2::new(u[0] - v[0], u[1] - v[1])).length() - 0.6;
-            if g1 < -1e-5 || g0 < -1e-5 { eprintln!("BAD {:.9} {:?} {:?} gap {:e} -> {:e} span {:e} row {:?}", assembly.now().seconds(), b[i], b[j], g0, g1, span, stepper.rows.iter().filter(|r| r.touch.bodies == crate::rigid::contacts::touch::sorted(b[i], b[j])).map(|r| (r.gap, r.rate(&stepper.middle), r.impulse)).collect::<Vec<_>>()); }
-        } }
-    }
     set_off((assembly, books, zeno), region, stepper, (steps, span));
 }
 
 fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
     let now = assembly.now();
     let states = region.bodies().iter().map(|&body| assembly.trajectory(body).unwound_at(now));
-    stepper.exact.inertias.clear();
-    stepper.exact.inertias.extend(region.bodies().iter().map(|&body| assembly.inertia(body)));
     stepper.velocities.clear();
     stepper.velocities.extend(states.map(|state| [state.velocity.x, state.velocity.y, state.angular_velocity]));
     stepper.velocities.push([0.0; 3]);
@@ -127,7 +108,7 @@ fn residual(steps: RegionSteps) -> f64 {
 /// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
 /// have brought. True if any has come fast.
 fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> bool {
-    let Stepper { rows, velocities, shifts, exact, .. } = stepper;
+    let Stepper { rows, velocities, shifts, .. } = stepper;
     let (mut any_closes, mut any_fast, mut brought) = (false, false, 0.0);
     for row in rows.iter_mut().filter(|row| row.touches) {
         let rate = row.rate(velocities);
@@ -146,7 +127,7 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> bool {
     }
     let before = &mut *shifts;
     before.clone_from(velocities);
-    solve(exact, rows, velocities, residual(steps), |row| row.touches);
+    sweep(rows, velocities, residual(steps), |row| row.touches);
     // The energy that impulses give is their work at the mean of the rates before and after.
     let given = |rows: &[StepRow], velocities: &[[f64; 3]]| -> f64 {
         rows.iter().map(|row| 0.5 * row.impulse * (row.rate(before) + row.rate(velocities))).sum()
@@ -156,7 +137,7 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> bool {
         for row in rows.iter_mut() {
             row.offset = 0.0;
         }
-        solve(exact, rows, velocities, residual(steps), |row| row.touches);
+        sweep(rows, velocities, residual(steps), |row| row.touches);
     }
     for row in rows.iter_mut() {
         row.stopped_by = row.impulse;
@@ -164,12 +145,12 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> bool {
     any_fast
 }
 
-/// Joins the bodies that touch.
+/// Joins the bodies that touch, or come to touch within the step.
 fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
     let Stepper { rows, parts, .. } = stepper;
     let count = region.bodies().len();
     parts.reset(count);
-    for row in rows.iter().filter(|row| row.gap <= JOINED * steps.slack) {
+    for row in rows.iter().filter(|row| row.impulse > 0.0 || row.gap <= JOINED * steps.slack) {
         let [a, b] = row.places;
         if a < count && b < count {
             parts.join(a, b);
@@ -179,7 +160,7 @@ fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
 
 /// Finds the velocities in the middle of a step of a length `span` [s], at which no gap falls below its target.
 fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
-    let Stepper { rows, velocities, middle, accelerations, exact, .. } = stepper;
+    let Stepper { rows, velocities, middle, accelerations, .. } = stepper;
     let half = 0.5 * span;
     middle.clear();
     middle.extend(velocities.iter().zip(accelerations).map(|(velocity, acceleration)| {
@@ -190,13 +171,13 @@ fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
         row.offset = row.gap.max(0.0) / span + half * row.bend;
         row.impulse = row.pressed.unwrap_or(row.stopped_by);
     }
-    solve(exact, rows, middle, residual, |_| true);
+    sweep(rows, middle, residual, |_| true);
 }
 
 /// Finds the displacements that bring what overlaps back to its target, if any overlaps by more than a minor part of the slack. They
 /// go no farther than a small multiple of that overlap.
 fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
-    let Stepper { rows, middle, shifts, exact, .. } = stepper;
+    let Stepper { rows, middle, shifts, .. } = stepper;
     shifts.clear();
     shifts.resize(middle.len(), [0.0; 3]);
     let deepest = rows.iter().map(|row| row.gap).fold(0.0, f64::min);
@@ -208,7 +189,7 @@ fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
     for row in rows.iter_mut() {
         (row.impulse, row.offset) = (0.0, row.gap);
     }
-    solve(exact, rows, shifts, MINOR * MINOR * steps.slack, |row| row.gap <= JOINED * steps.slack);
+    sweep(rows, shifts, MINOR * MINOR * steps.slack, |row| row.gap <= JOINED * steps.slack);
     let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
     if farthest > -LARGE * deepest {
         shifts.fill([0.0; 3]);
