@@ -18,10 +18,10 @@ use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among};
 use crate::rigid::settings::RegionSteps;
-use crate::rigid::shares::SEVERAL;
+use crate::rigid::shares::{HALF_ZONE, ROUNDS, SEVERAL};
 use crate::rigid::stepping::ending::end_step;
 use crate::rigid::stepping::step::step_on;
-use crate::rigid::zeno::budget::charge_event;
+use crate::rigid::zeno::budget::{charge_event, spend_all};
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::stepped::Pressed;
 use glam::DVec2;
@@ -44,19 +44,22 @@ pub(crate) fn handle_step(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
 pub(crate) fn has_gone_by_steps(rooms: &mut Rooms, work: &mut EventWork) -> Result<bool, AdvanceError> {
     let Some(steps) = rooms.assembly.settings().region_steps else { return Ok(false) };
     let region = &work.region;
-    let is_due = region.bodies().iter().all(|&body| is_plain(&rooms.assembly, &rooms.connectors, body))
-        && charge_event(&rooms.assembly, &mut rooms.zeno, region.bodies(), region.records());
-    if is_due {
+    let is_plain = region.bodies().iter().all(|&body| is_plain(&rooms.assembly, &rooms.connectors, body));
+    let has_stepped = !region.steps().is_empty();
+    let is_due = charge_event(&rooms.assembly, &mut rooms.zeno, region.bodies(), region.records());
+    let goes_on = is_plain && (is_due || has_stepped);
+    if goes_on || has_stepped {
         work.seeds.clear();
         work.seeds.extend(work.region.bodies());
+    }
+    if goes_on {
         go_by_steps(rooms, work, steps)?;
-    } else if !work.region.steps().is_empty() {
-        work.seeds.clear();
-        work.seeds.extend(work.region.bodies());
+    } else if has_stepped {
+        gather(rooms, work, steps);
         bring_to_target(rooms, work, steps);
         collect_again(rooms, work);
     }
-    Ok(is_due)
+    Ok(goes_on)
 }
 
 /// True for a body that only contacts and a uniform acceleration act on.
@@ -68,18 +71,7 @@ fn is_plain(assembly: &Assembly, connectors: &Connectors, body: BodyId) -> bool 
 
 /// Takes the seeds, and all that touch them, from one step to the next.
 fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<(), AdvanceError> {
-    work.region.set_cause(Cause::Other);
-    loop {
-        let longest = rooms.zeno.stepped().longest_next();
-        let span = if longest.is_finite() { longest } else { steps.span };
-        collect_wide(&rooms.view(), &mut work.region, &work.seeds, RegionSteps { span, ..steps });
-        if !work.region.is_led() {
-            break;
-        }
-        cut_groups(rooms, &mut work.region);
-        work.seeds.clear();
-        work.seeds.extend(work.region.bodies());
-    }
+    gather(rooms, work, steps);
     let Rooms { assembly, connectors, books, zeno, .. } = &mut *rooms;
     expect_forces(zeno, &books.told().changes().end, steps);
     step_on((assembly, connectors), (books, zeno), &mut work.region, &mut work.stepper, steps);
@@ -93,6 +85,22 @@ fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> R
         part += 1;
     }
     Ok(())
+}
+
+/// Collects the seeds and all that touch them, in flight, for a step.
+fn gather(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) {
+    work.region.set_cause(Cause::Other);
+    loop {
+        let longest = rooms.zeno.stepped().longest_next();
+        let span = if longest.is_finite() { longest } else { steps.span };
+        collect_wide(&rooms.view(), &mut work.region, &work.seeds, RegionSteps { span, ..steps });
+        work.seeds.clear();
+        work.seeds.extend(work.region.bodies());
+        if !work.region.is_led() {
+            return;
+        }
+        cut_groups(rooms, &mut work.region);
+    }
 }
 
 /// Lets the solves begin with the forces at which contacts were cut.
@@ -128,10 +136,13 @@ fn predict_coasting(rooms: &mut Rooms, region: &Region) {
 }
 
 /// Lets the seeds, which touch each other, go on by events: what touches is brought to its target, and is stopped there
-/// without elasticity.
+/// without elasticity. If that cannot be done, they go on by steps after all.
 fn leave(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<(), AdvanceError> {
-    bring_to_target(rooms, work, steps);
     let now = rooms.assembly.now();
+    if !bring_to_target(rooms, work, steps) {
+        spend_all(&mut rooms.zeno, work.seeds.iter().copied(), now);
+        return go_by_steps(rooms, work, steps);
+    }
     collect_region(&rooms.view(), &mut work.region, &work.seeds, now);
     if work.region.is_led() {
         cut_groups(rooms, &mut work.region);
@@ -144,34 +155,44 @@ fn leave(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<
 }
 
 /// Moves the seeds, which are in flight, by the least displacement that leaves no gap below its target and brings contacts to it that
-/// are a little above.
-fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) {
-    collect_wide_among(&rooms.view(), &mut work.region, &work.seeds, steps);
-    let EventWork { region, settling, lift, .. } = work;
-    let assembly = &mut rooms.assembly;
-    pose_displacement(assembly, region, lift, steps);
-    if lift.rows.is_empty() || settling.solve(&lift.problem).is_err() {
-        return;
+/// are a little above. False if some gaps are then below it all the same.
+fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> bool {
+    let zone = HALF_ZONE * rooms.assembly.settings().tolerances.accuracy;
+    for _ in 0..ROUNDS {
+        collect_wide_among(&rooms.view(), &mut work.region, &work.seeds, steps);
+        let EventWork { region, settling, lift, .. } = &mut *work;
+        if pose_displacement(&rooms.assembly, region, lift, steps) >= -zone {
+            return true;
+        }
+        if settling.solve(&lift.problem).is_err() {
+            return false;
+        }
+        add_displacement(&rooms.assembly, region, settling, lift);
+        let longest = lift.shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
+        if longest > SEVERAL * JOINED * steps.slack {
+            return false;
+        }
+        displace(rooms, &work.region, &work.lift.shifts);
+        follow(rooms, &work.region);
     }
-    add_displacement(assembly, region, settling, lift);
-    let longest = lift.shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
-    if longest > SEVERAL * JOINED * steps.slack {
-        return;
-    }
+    false
+}
+
+/// Displaces the bodies of a region.
+fn displace(rooms: &mut Rooms, region: &Region, shifts: &[[f64; 3]]) {
+    let Rooms { assembly, books, .. } = rooms;
     let now = assembly.now();
-    for (&body, &[x, y, turn]) in region.bodies().iter().zip(&lift.shifts) {
+    for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts) {
         let before = assembly.trajectory(body).unwound_at(now);
         let shift = DVec2::new(x, y);
-        let (trajectory, moved) = (
-            assembly.trajectory(body),
-            BodyState { position: before.position + shift, angle: before.angle + turn, ..before },
-        );
+        let moved = BodyState { position: before.position + shift, angle: before.angle + turn, ..before };
+        let trajectory = assembly.trajectory(body);
         let gain = trajectory.free_motion().acceleration.dot(shift) / trajectory.body().inverse_mass;
-        rooms.books.book_steps(-gain);
+        books.book_steps(-gain);
         assembly.trajectory_mut(body).fly_from(now, moved);
     }
-    follow(rooms, &work.region);
 }
+
 /// Tells the search how the bodies of a region move now.
 fn follow(rooms: &mut Rooms, region: &Region) {
     for &body in region.bodies() {
@@ -179,19 +200,23 @@ fn follow(rooms: &mut Rooms, region: &Region) {
     }
 }
 
-fn pose_displacement(assembly: &Assembly, region: &Region, lift: &mut Lift, steps: RegionSteps) {
+/// Sets up the least displacement; returns the least gap above its target [m], or 0.
+fn pose_displacement(assembly: &Assembly, region: &Region, lift: &mut Lift, steps: RegionSteps) -> f64 {
     let target_gap = assembly.settings().tolerances.target_gap;
     region.begin(&mut lift.problem, |body| assembly.inertia(body));
     lift.rows.clear();
+    let mut least = 0.0f64;
     for (index, record) in region.records().iter().enumerate() {
         let gap = record.geometry.distance - target_gap;
         if gap > JOINED * steps.slack {
             continue;
         }
+        least = least.min(gap);
         let Some(row) = region.row_of(record, gap) else { continue };
         lift.problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
         lift.rows.push(index);
     }
+    least
 }
 
 fn add_displacement(assembly: &Assembly, region: &Region, settling: &Settling, lift: &mut Lift) {

@@ -64,9 +64,14 @@ fn collect(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: Region
     region.records = records;
 }
 
-/// The features of a record, that of its primary body first.
-fn features_of(record: &Collision) -> [Option<FeatureId>; 2] {
-    [record.parties.primary.feature(), record.parties.normal.feature()]
+/// The corner of a record that touches a side, with its body.
+fn corner_of(record: &Collision) -> Option<(BodyId, FeatureId)> {
+    let Collision { parties, geometry, .. } = record;
+    let radii = [geometry.radius_primary, geometry.radius_normal];
+    let sides = [parties.primary, parties.normal];
+    let mut corners = sides.into_iter().zip(radii).filter(|&(_, radius)| radius == Some(0.0));
+    let (corner, _) = corners.next()?;
+    Some((corner.body, corner.feature()?))
 }
 
 /// Adds the records of two bodies that may touch within a step; true if they touch now, within its slack.
@@ -112,11 +117,11 @@ fn collect_near(
     fresh.retain(|record| record.geometry.outside <= JOINED * steps.slack);
     let sunk = |record: &Collision| record.geometry.distance < target_gap - LARGE * steps.slack;
     for index in (0..fresh.len()).rev() {
-        // A corner, or a disc, touches the side from which it is farthest: seen from the others it only lies behind them.
-        let own = features_of(&fresh[index]);
+        // A corner touches the side from which it is farthest: seen from the others it only lies behind them.
+        let own = corner_of(&fresh[index]);
         let is_nearer = |other: &Collision| {
-            let theirs = features_of(other);
-            (own[0] == theirs[0] || own[1] == theirs[1])
+            own.is_some()
+                && corner_of(other) == own
                 && other.geometry.distance > fresh[index].geometry.distance
         };
         if sunk(&fresh[index]) && fresh.iter().any(is_nearer) {

@@ -49,6 +49,8 @@ struct Charge {
     contacts: usize,
     /// Largest speed [m/s] at which one of those closed before, or opens now.
     fastest: f64,
+    /// Least gap above its target [m], or 0.
+    deepest: f64,
 }
 
 impl Stepper {
@@ -218,11 +220,12 @@ fn set_off(
         let length = rest.iter().take_while(|&&place| parts.root(place) == root).count();
         let (part, others) = rest.split_at(length);
         rest = others;
-        let Charge { changes, contacts, fastest} = charges[root];
+        let Charge { changes, contacts, fastest, deepest } = charges[root];
         let units = (changes * contacts) as f64;
         let bodies = || part.iter().map(|&place| region.bodies()[place]);
         // A body that touches nothing has nothing to step for.
-        let goes_on = charge(zeno, bodies(), units, now, steps.span) && contacts > 0;
+        let is_sunk = deepest < -MINOR * steps.slack;
+        let goes_on = charge(zeno, bodies(), units, now, steps.span) && contacts > 0 || is_sunk;
         if !goes_on {
             for &place in part {
                 let motion = (velocities[place], shifts[place]);
@@ -263,9 +266,10 @@ fn list_parts(region: &Region, stepper: &mut Stepper) {
     charges.clear();
     charges.resize(count, Charge::default());
     for row in rows.iter() {
-        let Charge { changes, contacts, fastest } =
+        let Charge { changes, contacts, fastest, deepest } =
             &mut charges[parts.root(row.places[0].min(row.places[1]))];
         *contacts += 1;
+        *deepest = deepest.min(row.gap);
         if row.pressed.is_some() != (row.impulse > 0.0) {
             *changes += 1;
             *fastest = fastest.max(row.approach).max(row.rate(middle));

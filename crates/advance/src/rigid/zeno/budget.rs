@@ -17,6 +17,9 @@ const BUDGET: f64 = 2000.0;
 /// Units that a body regains in the span of a step of its region [-].
 const REGAINED: f64 = 10.0;
 
+/// Number of spans in which nothing happens after which a body goes on by events [-].
+const CALM_SPANS: f64 = 10.0;
+
 /// What a body has spent.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -38,8 +41,9 @@ impl Spent {
 
     fn spend(&mut self, units: f64) {
         self.units += units;
-        if self.units >= BUDGET {
-            (self.units, self.by_steps) = (BUDGET, true);
+        self.by_steps |= self.units >= BUDGET;
+        if self.by_steps {
+            self.units = self.units.min(CALM_SPANS * REGAINED);
         }
     }
 }
@@ -73,4 +77,13 @@ pub(crate) fn charge(
         by_steps |= spent.by_steps;
     }
     by_steps
+}
+
+/// Makes some bodies go on by steps.
+pub(crate) fn spend_all(zeno: &mut Zeno, bodies: impl Iterator<Item = BodyId>, now: Time) {
+    for body in bodies {
+        let spent = &mut zeno.spent[body.index()];
+        spent.at = now;
+        spent.spend(BUDGET);
+    }
 }
