@@ -361,7 +361,8 @@ impl Inspector {
     /// Depth [m] to which two bodies may sink into each other beyond the target gap.
     fn may_sink(&self, world: &World, bodies: [BodyId; 2]) -> f64 {
         let reach = bodies.map(|body| world.shape(body).reach());
-        self.sinks.map_or(0.0, |slow| slow + SUNK_SHARE * reach[0].min(reach[1]))
+        let by_impulses = self.sinks.map_or(0.0, |slow| slow + SUNK_SHARE * reach[0].min(reach[1]));
+        by_impulses.max(world.room_to_sink(bodies))
     }
 
     /// Notes the energy that has been turned over.

@@ -16,6 +16,7 @@ pub(crate) fn rigid_settings(
 ) -> RigidSettings {
     let method = method(settings.integrator);
     let derived = RigidSettings::with_tolerances(settings.tolerance, tolerances, scales, method);
+    let impulse_step = settings.fixed_step().filter(|_| !settings.contacts);
     RigidSettings {
         impact_law: settings.impact_law,
         order: settings.impact_order,
@@ -25,7 +26,8 @@ pub(crate) fn rigid_settings(
         projection: settings.stabilization == Stabilization::Projection,
         extra: extra(settings),
         without: settings.without,
-        impulse_step: settings.fixed_step().filter(|_| !settings.contacts),
+        impulse_step,
+        region_steps: derived.region_steps.filter(|_| impulse_step.is_none()),
         joint_small_impacts: settings.joint_small_impacts,
         ..derived
     }

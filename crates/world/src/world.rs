@@ -326,9 +326,14 @@ impl World {
         self.monitor.tolerance
     }
 
-    /// Distance [m] by which two slow bodies may sink into each other before they are put back; 0 where contacts carry
-    /// forces.
-    pub(crate) fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
+    /// Distance [m] by which two bodies may overlap now, beyond the target gap, before they are put back: two slow ones where
+    /// contacts carry impulses only, and two whose contact is in a [step](Statistics::region_steps) of bodies whose events
+    /// accumulated; else 0.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    #[must_use]
+    pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         self.strategy.room_to_sink(bodies)
     }
 

@@ -117,10 +117,11 @@ mod tests {
     #[test]
     fn every_number_is_one_source() {
         let sources = Sources { bodies: 3, connectors: 2 };
-        let found: Vec<Source> = (0..11).map(|id| sources.source(SourceId(id))).collect();
+        let found: Vec<Source> = (0..14).map(|id| sources.source(SourceId(id))).collect();
         let [a, b, c] = [BodyId(0), BodyId(1), BodyId(2)];
         let boxes_and_groups = [a, b, c].map(Source::Box).into_iter().chain([a, b, c].map(Source::Group));
-        let rest = [Source::Connector(ConnectorId(0)), Source::Connector(ConnectorId(1)), Source::Tick];
+        let connectors = [ConnectorId(0), ConnectorId(1)].map(Source::Connector);
+        let rest = connectors.into_iter().chain([a, b, c].map(Source::Step)).chain([Source::Tick]);
         let pairs = [PairId(0), PairId(1)].map(Source::Pair);
         assert_eq!(found, boxes_and_groups.chain(rest).chain(pairs).collect::<Vec<_>>());
         assert!(found.iter().zip(0..).all(|(&source, id)| sources.id(source) == SourceId(id)));

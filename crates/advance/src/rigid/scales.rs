@@ -3,7 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::remedies::RemedySet;
 use crate::rigid::settings::{RegionSteps, RigidSettings, StepControl};
-use crate::rigid::shares::NEGLIGIBLE;
+use crate::rigid::shares::{NEGLIGIBLE, TINY};
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Aabb;
@@ -180,11 +180,13 @@ fn resolution_time(tolerances: &Tolerances, scales: &Scales) -> f64 {
 }
 
 /// Steps of regions whose events accumulate: forces move a body by `SLACK_SHARE` of the smallest one, or through half of
-/// the target zone if that is wider. Without forces there are none, as nothing comes back.
+/// the target zone if that is wider. Without forces there are none, as nothing comes back, and neither where the zone can be
+/// seen: few events fit into so coarse a run.
 fn region_steps(tolerances: &Tolerances, scales: &Scales) -> Option<RegionSteps> {
-    let slack = tolerances.accuracy.max(SLACK_SHARE * scales.smallest_radius.unwrap_or(0.0));
-    let is_forced = scales.acceleration > 0.0 && slack > 0.0;
-    is_forced.then(|| RegionSteps { span: (2.0 * slack / scales.acceleration).sqrt(), slack })
+    let radius = scales.smallest_radius.filter(|radius| tolerances.accuracy <= TINY * radius)?;
+    let slack = tolerances.accuracy.max(SLACK_SHARE * radius);
+    let span = (2.0 * slack / scales.acceleration).sqrt();
+    (scales.acceleration > 0.0).then_some(RegionSteps { span, slack })
 }
 
 #[cfg(test)]

@@ -187,8 +187,9 @@ impl RigidSystem {
     #[inline]
     pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         let assembly = &self.rooms.assembly;
-        let steps = assembly.settings().region_steps.filter(|_| assembly.share_step(bodies));
-        room_to_sink(assembly, bodies) + steps.map_or(0.0, |_| NEGLIGIBLE * bodies.map(|b| assembly.trajectory(b).reach()).into_iter().fold(f64::INFINITY, f64::min))
+        let reach = bodies.map(|body| assembly.trajectory(body).reach());
+        let in_step = if assembly.share_step(bodies) { NEGLIGIBLE * reach[0].min(reach[1]) } else { 0.0 };
+        room_to_sink(assembly, bodies) + in_step
     }
 
     /// Evaluates the forces of all active rows at a time within the present segments. Allocates.

@@ -28,6 +28,7 @@ pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     joint_small_impacts: false,
     rest_speed: 1e-12,
     resolution_time: 1e-10,
+    region_steps: None,
 };
 
 /// SplitMix64: the same scenes on every machine.

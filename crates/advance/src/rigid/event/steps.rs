@@ -18,7 +18,7 @@ use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among};
 use crate::rigid::settings::RegionSteps;
-use crate::rigid::shares::{HALF_ZONE, ROUNDS, SEVERAL};
+use crate::rigid::shares::{HALF_ZONE, ROUNDS};
 use crate::rigid::stepping::ending::end_step;
 use crate::rigid::stepping::step::step_on;
 use crate::rigid::zeno::budget::{charge_event, spend_all};
@@ -77,14 +77,14 @@ fn go_by_steps(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> R
     step_on((assembly, connectors), (books, zeno), &mut work.region, &mut work.stepper, steps);
     follow(rooms, &work.region);
     predict_coasting(rooms, &work.region);
-    let mut part = 0;
-    while let Some(bodies) = work.stepper.leaving(part) {
+    let leaving = work.stepper.take_leaving();
+    let outcome = leaving.parts().try_for_each(|part| {
         work.seeds.clear();
-        work.seeds.extend(bodies);
-        leave(rooms, work, steps)?;
-        part += 1;
-    }
-    Ok(())
+        work.seeds.extend(part);
+        leave(rooms, work, steps)
+    });
+    work.stepper.put_leaving(leaving);
+    outcome
 }
 
 /// Collects the seeds and all that touch them, in flight, for a step.
@@ -169,7 +169,8 @@ fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) 
         }
         add_displacement(&rooms.assembly, region, settling, lift);
         let longest = lift.shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
-        if longest > SEVERAL * JOINED * steps.slack {
+        // Others may be as near as that, or come as near from their side.
+        if longest > 0.5 * JOINED * steps.slack {
             return false;
         }
         displace(rooms, &work.region, &work.lift.shifts);

@@ -49,8 +49,6 @@ pub(crate) struct Lane {
     pub(super) kind: LaneKind,
     /// The body neither moves nor is about to.
     pub(super) is_at_rest: bool,
-    /// The body moves in a step of its region.
-    pub(super) is_coasting: bool,
 }
 
 /// A disc in which a centre of mass stays for some time.
@@ -81,7 +79,6 @@ impl Lane {
             course: f64::INFINITY,
             kind: LaneKind::Other,
             is_at_rest: false,
-            is_coasting: false,
         };
         lane.follow(trajectory);
         lane
@@ -90,7 +87,6 @@ impl Lane {
     /// Copies the present motion of the body.
     pub(crate) fn follow(&mut self, trajectory: &Trajectory) {
         self.is_at_rest = trajectory.is_at_rest();
-        self.is_coasting = trajectory.is_coasting();
         let Some(parabola) = trajectory.flight().and_then(Flight::parabola) else {
             self.kind = LaneKind::Other;
             self.start = trajectory.start();
@@ -110,7 +106,9 @@ impl Lane {
         let Polynomial { position, velocity, acceleration } = parabola;
         (self.position, self.velocity, self.acceleration) = (position, velocity, acceleration);
         self.start = trajectory.start();
-        self.kind = if trajectory.disc().is_some() { LaneKind::Disc } else { LaneKind::Parabola };
+        // Whether discs that coast may meet at all depends on the steps that they are in.
+        let is_plain = trajectory.disc().is_some() && !trajectory.is_coasting();
+        self.kind = if is_plain { LaneKind::Disc } else { LaneKind::Parabola };
     }
 
     /// A disc in which the centre of mass stays from a time on, for a span [s] within its segment.

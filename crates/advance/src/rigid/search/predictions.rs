@@ -121,7 +121,7 @@ impl Searching<'_> {
     #[inline]
     fn disc_at(&self, body: BodyId, from: Time) -> Option<DiscAt> {
         let lane = &self.search.lanes[body.index()];
-        let is_plain = lane.kind == LaneKind::Disc && !lane.is_coasting && self.assembly.settings().search.depth == 0.0;
+        let is_plain = lane.kind == LaneKind::Disc && self.assembly.settings().search.depth == 0.0;
         let Lane { radius, trigger_gap, stay, .. } = *lane;
         is_plain.then(|| DiscAt { parabola: lane.parabola_from(from), radius, trigger_gap, stay })
     }

@@ -35,9 +35,7 @@ pub(crate) struct Stepper {
     charges: Vec<Charge>,
     /// Places of a region in the order of their parts.
     places: Vec<usize>,
-    /// Bodies whose steps are over, part by part, and the ends of the parts.
-    leaving: Vec<BodyId>,
-    ends: Vec<usize>,
+    leaving: Leaving,
 }
 
 /// What happens in a part: what it costs is its changes times its contacts, as if events made them one by one.
@@ -53,17 +51,38 @@ struct Charge {
     deepest: f64,
 }
 
+/// Bodies whose steps are over, part by part.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Leaving {
+    bodies: Vec<BodyId>,
+    /// Where each part ends among the bodies.
+    ends: Vec<usize>,
+}
+
+impl Leaving {
+    /// The parts.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &[BodyId]> {
+        let starts = std::iter::once(&0).chain(&self.ends);
+        starts.zip(&self.ends).map(|(&start, &end)| &self.bodies[start..end])
+    }
+}
+
 impl Stepper {
-    /// The bodies of a part whose steps are over, by its number; `None` if there are no more.
-    pub(crate) fn leaving(&self, part: usize) -> Option<&[BodyId]> {
-        let end = *self.ends.get(part)?;
-        let start = part.checked_sub(1).map_or(0, |before| self.ends[before]);
-        Some(&self.leaving[start..end])
+    /// Takes out the bodies whose steps are over.
+    pub(crate) fn take_leaving(&mut self) -> Leaving {
+        std::mem::take(&mut self.leaving)
+    }
+
+    /// Gives back the buffers of such a list.
+    pub(crate) fn put_leaving(&mut self, mut leaving: Leaving) {
+        leaving.bodies.clear();
+        leaving.ends.clear();
+        self.leaving = leaving;
     }
 }
 
 /// Brings the bodies of a region, which are in flight and were collected for a step, to velocities at which nothing
-/// closes, and lets those that go on by steps coast. Others are left in flight; [`Stepper::leaving`] lists them.
+/// closes, and lets those that go on by steps coast. Others are left in flight; [`Stepper::take_leaving`] lists them.
 pub(crate) fn step_on(
     (assembly, connectors): (&mut Assembly, &Connectors),
     (books, zeno): (&mut Books, &mut Zeno),
@@ -191,7 +210,7 @@ fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
     for row in rows.iter_mut() {
         (row.impulse, row.offset) = (0.0, row.gap);
     }
-    sweep(rows, shifts, MINOR * MINOR * steps.slack, |row| row.gap <= JOINED * steps.slack);
+    sweep(rows, shifts, MINOR * MINOR * steps.slack, |_| true);
     let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
     if farthest > -LARGE * deepest {
         shifts.fill([0.0; 3]);
@@ -211,9 +230,7 @@ fn set_off(
     list_parts(region, stepper);
     let now = assembly.now();
     let mut parts = std::mem::take(&mut stepper.parts);
-    let Stepper { rows, velocities, middle, shifts, accelerations, charges, places, leaving, ends, .. } = stepper;
-    leaving.clear();
-    ends.clear();
+    let Stepper { rows, velocities, middle, shifts, accelerations, charges, places, leaving, .. } = stepper;
     let mut rest = places.as_slice();
     while let Some(&first) = rest.first() {
         let root = parts.root(first);
@@ -231,8 +248,8 @@ fn set_off(
                 let motion = (velocities[place], shifts[place]);
                 move_on(assembly, books, region.bodies()[place], motion, false);
             }
-            leaving.extend(bodies());
-            ends.push(leaving.len());
+            leaving.bodies.extend(bodies());
+            leaving.ends.push(leaving.bodies.len());
             continue;
         }
         let mut stepped = zeno.stepped_mut().take_empty();

@@ -18,7 +18,7 @@ const BUDGET: f64 = 2000.0;
 const REGAINED: f64 = 10.0;
 
 /// Number of spans in which nothing happens after which a body goes on by events [-].
-const CALM_SPANS: f64 = 10.0;
+const CALM_SPANS: f64 = 50.0;
 
 /// What a body has spent.
 #[derive(Clone, Copy, Debug, Default)]
