@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The rooms, each of which may import those before it only.
-const ROOMS: [&str; 15] = [
+const ROOMS: [&str; 16] = [
     "bodies",
     "connectors",
     "contacts",
@@ -25,6 +25,7 @@ const ROOMS: [&str; 15] = [
     "region",
     "impact",
     "active_set",
+    "stepping",
     "event",
     "ticks",
     "due",

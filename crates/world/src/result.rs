@@ -193,7 +193,10 @@ impl Serialize for StatisticsResult {
         let world = &self.world;
         let any_acted = world.remedies.acted().next().is_some();
         let any_steps = world.region_steps > 0;
-        let fields = 8 + usize::from(any_steps) + usize::from(self.wall_seconds_median.is_some()) + usize::from(any_acted);
+        let fields = 8
+            + usize::from(any_steps)
+            + usize::from(self.wall_seconds_median.is_some())
+            + usize::from(any_acted);
         let mut statistics = serializer.serialize_struct("StatisticsResult", fields)?;
         statistics.serialize_field("steps", &world.steps)?;
         statistics.serialize_field("evaluations", &world.evaluations)?;

@@ -14,6 +14,7 @@ mod rail_corners;
 mod rail_stops;
 mod reference_failures;
 mod reference_scenes;
+mod region_steps;
 mod release;
 mod remedies;
 mod rest;

@@ -18,6 +18,7 @@
 //! | `region` | what touches around an event? |
 //! | `impact` | which impulses? |
 //! | `active_set` | which rows are active afterwards? |
+//! | `stepping` | how does a region go on whose events accumulate? |
 //! | `event` | what is done, in which order? |
 //! | `ticks` | what is done where contacts carry impulses only? |
 //! | `due` | which event is it? |

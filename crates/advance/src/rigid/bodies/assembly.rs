@@ -175,9 +175,7 @@ impl Assembly {
         let [a, b] = bodies;
         let coasts = |body: BodyId| self.trajectory(body).is_coasting();
         match bodies.map(|body| self.is_movable(body)) {
-            [true, true] => {
-                coasts(a) && coasts(b) && self.leader_of[a.index()] == self.leader_of[b.index()]
-            }
+            [true, true] => coasts(a) && coasts(b) && self.leader_of[a.index()] == self.leader_of[b.index()],
             [true, false] => coasts(a),
             [false, true] => coasts(b),
             [false, false] => false,

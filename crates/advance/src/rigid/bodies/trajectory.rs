@@ -74,7 +74,17 @@ impl Trajectory {
             Flight::new(state, free_motion.acceleration, free_motion.linear_rate, free_motion.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
-        Self { start: time, flight, reach, disc, body, turns: 0.0, present: Present::Flight, dense: None, coast: None }
+        Self {
+            start: time,
+            flight,
+            reach,
+            disc,
+            body,
+            turns: 0.0,
+            present: Present::Flight,
+            dense: None,
+            coast: None,
+        }
     }
 
     /// Takes a shape that is equal to its own from a pool, or leaves its own there.

@@ -14,7 +14,8 @@ pub(crate) fn write_ledger(
     time: Time,
     ledger: &mut Ledger,
 ) {
-    let Ledger { impacts, captures, projections, steps, interventions, damping, ref force_laws } = books.ledger;
+    let Ledger { impacts, captures, projections, steps, interventions, damping, ref force_laws } =
+        books.ledger;
     let mut room = std::mem::take(&mut ledger.force_laws);
     room.clone_from(force_laws);
     *ledger = Ledger { impacts, captures, projections, steps, interventions, damping, force_laws: room };

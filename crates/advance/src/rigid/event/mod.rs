@@ -4,7 +4,7 @@
 //! either in flight or in a group with a segment, and all predictions of the bodies involved are new. It keeps
 //! nothing but buffers, and sees all rooms but those that call it: which event it is, it is told (`due`).
 //!
-//! * velocities: `impacting`, `changing` (active rows change), `resolving`, `intervention` (by the caller), `lift` and `shift`
+//! * velocities: `impacting`, `changing` (active rows change), `resolving`, `steps` (regions whose events accumulate), `intervention` (by the caller), `lift` and `shift`
 //!   (sunk bodies are put back);
 //! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `rules` (what the
 //!   search skips), `telling`;

@@ -3,7 +3,7 @@
 //! **Invariant**: on return of `collecting` every body that shares a group, a connector row or a contact with a body of the
 //! region is in it, and each place where they touch has one record. The room reads all rooms below it and changes none.
 //!
-//! `touching`: the region · `cause`: of the event · `collecting`: gathers it · `records`: measures it anew · `view`: what it
+//! `touching`: the region · `cause`: of the event · `collecting`: gathers it · `wide`: for a step · `records`: measures it anew · `view`: what it
 //! reads.
 
 pub(super) mod cause;

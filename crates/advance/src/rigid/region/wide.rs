@@ -59,7 +59,10 @@ fn collect(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: Region
     }
     let mut records = std::mem::take(&mut region.records);
     records.retain(|record| {
-        record.bodies().into_iter().all(|body| !view.assembly.is_movable(body) || region.place(body).is_some())
+        record
+            .bodies()
+            .into_iter()
+            .all(|body| !view.assembly.is_movable(body) || region.place(body).is_some())
     });
     region.records = records;
 }
@@ -102,7 +105,8 @@ fn collect_near(
     // step; what lies deeper than a step may be off lies on the far side of a corner.
     let tolerances =
         Tolerances { target_gap: margin + target_gap, accuracy: margin, ..assembly.settings().tolerances };
-    let least_reach = sides.iter().map(|&(body, _)| assembly.trajectory(body).reach()).fold(f64::INFINITY, f64::min);
+    let least_reach =
+        sides.iter().map(|&(body, _)| assembly.trajectory(body).reach()).fold(f64::INFINITY, f64::min);
     let depth = SMALL * least_reach;
     let mut moments = sides.map(|(id, moving)| Moment { id, body: assembly.trajectory(id).body(), moving });
     // The lesser body first: records do not depend on which of the two was found first.

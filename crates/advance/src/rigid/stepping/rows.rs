@@ -39,6 +39,8 @@ pub(crate) struct StepRow {
     /// Impulse before the present sweep, and change of it along which the next one begins.
     pub(crate) before: f64,
     pub(crate) direction: f64,
+    /// Impulse of the step, while displacements are found.
+    pub(crate) kept: f64,
     /// Impulse, or displacement, of the problem that is being solved.
     pub(crate) impulse: f64,
     /// The rate must be at least the opposite of this.
@@ -100,6 +102,7 @@ pub(crate) fn list_rows(
             touches: before.is_some() || gap <= touching,
             impulse: 0.0,
             acts: false,
+            kept: 0.0,
             before: 0.0,
             direction: 0.0,
             offset: 0.0,

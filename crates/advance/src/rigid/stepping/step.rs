@@ -20,7 +20,7 @@ use halfgap_collision::{BodyId, BodyState};
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stepper {
-    pub(super) rows: Vec<StepRow>,
+    rows: Vec<StepRow>,
     /// Velocities (x, y, angle) of the bodies of the region, and of what cannot move.
     velocities: Vec<[f64; 3]>,
     /// Velocities in the middle of the step.
@@ -113,7 +113,9 @@ fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
     let now = assembly.now();
     let states = region.bodies().iter().map(|&body| assembly.trajectory(body).unwound_at(now));
     stepper.velocities.clear();
-    stepper.velocities.extend(states.map(|state| [state.velocity.x, state.velocity.y, state.angular_velocity]));
+    stepper
+        .velocities
+        .extend(states.map(|state| [state.velocity.x, state.velocity.y, state.angular_velocity]));
     stepper.velocities.push([0.0; 3]);
     let free = region.bodies().iter().map(|&body| assembly.trajectory(body).free_motion().acceleration);
     stepper.accelerations.clear();
@@ -184,9 +186,12 @@ fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
     let Stepper { rows, velocities, middle, accelerations, .. } = stepper;
     let half = 0.5 * span;
     middle.clear();
-    middle.extend(velocities.iter().zip(accelerations).map(|(velocity, acceleration)| {
-        [0, 1, 2].map(|k: usize| velocity[k] + half * acceleration[k])
-    }));
+    middle.extend(
+        velocities
+            .iter()
+            .zip(accelerations)
+            .map(|(velocity, acceleration)| [0, 1, 2].map(|k: usize| velocity[k] + half * acceleration[k])),
+    );
     for row in rows.iter_mut() {
         row.approach = (-row.rate(velocities)).max(0.0);
         row.offset = row.gap.max(0.0) / span + half * row.bend;
@@ -206,17 +211,16 @@ fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
         return;
     }
     // The impulses of the step are kept: they are where the next one begins.
-    let pushing: Vec<f64> = rows.iter().map(|row| row.impulse).collect();
     for row in rows.iter_mut() {
-        (row.impulse, row.offset) = (0.0, row.gap);
+        (row.kept, row.impulse, row.offset) = (row.impulse, 0.0, row.gap);
     }
     sweep(rows, shifts, MINOR * MINOR * steps.slack, |_| true);
     let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
     if farthest > -LARGE * deepest {
         shifts.fill([0.0; 3]);
     }
-    for (row, impulse) in rows.iter_mut().zip(pushing) {
-        row.impulse = impulse;
+    for row in rows.iter_mut() {
+        row.impulse = row.kept;
     }
 }
 

@@ -100,6 +100,7 @@ mod tests {
                 pressed: None,
                 stopped_by: 0.0,
                 acts: true,
+                kept: 0.0,
                 before: 0.0,
                 direction: 0.0,
                 impulse: 0.0,

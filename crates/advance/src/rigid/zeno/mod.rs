@@ -4,7 +4,7 @@
 //! that a run is hopeless.
 //!
 //! `memory`: past events of each body · `repeats`: events of a pair at one time · `accumulation`: more events than forces can
-//! resolve · `pace`, `steps`: steps too short to reach the end of the run · `turns`: bodies that turn too fast to be
+//! resolve · `budget`: what bodies may take part in before they go on by steps · `stepped`: the regions that do · `pace`, `steps`: steps too short to reach the end of the run · `turns`: bodies that turn too fast to be
 //! followed.
 
 pub(super) mod accumulation;
