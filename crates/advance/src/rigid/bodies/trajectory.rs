@@ -46,10 +46,18 @@ pub struct Trajectory {
     /// Number of whole turns to be added to the angles of the present motion.
     turns: f64,
     present: Present,
-    /// Dense output of the last integrated segment, if there was one.
-    dense: Option<Box<DensePath>>,
-    /// Uniform motion of the last step of a region, if there was one.
-    coast: Option<Box<Flight>>,
+    /// Motions of the last segments that were no flight, if there were any.
+    led: Option<Box<Led>>,
+}
+
+/// Motions of a body that moves along with others.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+struct Led {
+    /// Dense output of the last integrated segment.
+    dense: DensePath,
+    /// Uniform motion in the last step of a region, if there was one.
+    coast: Option<Flight>,
 }
 
 /// Kind of a body's present motion.
@@ -74,17 +82,7 @@ impl Trajectory {
             Flight::new(state, free_motion.acceleration, free_motion.linear_rate, free_motion.angular_rate)
         };
         let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
-        Self {
-            start: time,
-            flight,
-            reach,
-            disc,
-            body,
-            turns: 0.0,
-            present: Present::Flight,
-            dense: None,
-            coast: None,
-        }
+        Self { start: time, flight, reach, disc, body, turns: 0.0, present: Present::Flight, led: None }
     }
 
     /// Takes a shape that is equal to its own from a pool, or leaves its own there.
@@ -154,9 +152,9 @@ impl Trajectory {
     /// The present motion.
     #[inline]
     pub(crate) fn path(&self) -> Path<'_> {
-        match (self.present, &self.dense, &self.coast) {
-            (Present::Integrated, Some(dense), _) => Path::Dense(dense),
-            (Present::Coasting, _, Some(coast)) => Path::Flight(coast),
+        match (self.present, self.led.as_deref()) {
+            (Present::Integrated, Some(led)) => Path::Dense(&led.dense),
+            (Present::Coasting, Some(Led { coast: Some(coast), .. })) => Path::Flight(coast),
             _ => Path::Flight(&self.flight),
         }
     }
@@ -230,9 +228,9 @@ impl Trajectory {
     pub(crate) fn coast_from(&mut self, time: Time, state: BodyState) {
         self.start = time;
         self.present = Present::Coasting;
-        match &mut self.coast {
+        match &mut self.led.get_or_insert_default().coast {
             Some(coast) => coast.restart(state),
-            None => self.coast = Some(Box::new(Flight::new(state, DVec2::ZERO, 0.0, 0.0))),
+            coast @ None => *coast = Some(Flight::new(state, DVec2::ZERO, 0.0, 0.0)),
         }
     }
 
@@ -246,7 +244,7 @@ impl Trajectory {
     pub(crate) fn follow(&mut self, start: Time, polynomials: &[SegmentPolynomial; 3], span: f64) {
         self.start = start;
         self.present = Present::Integrated;
-        self.dense.get_or_insert_default().set(polynomials, span);
+        self.led.get_or_insert_default().dense.set(polynomials, span);
     }
 }
 
