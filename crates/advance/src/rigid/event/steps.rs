@@ -4,7 +4,6 @@ use crate::rigid::active_set::settling::Settling;
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::report::RowForce;
-use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::cutting::cut_groups;
@@ -16,7 +15,7 @@ use crate::rigid::region::cause::Cause;
 use crate::rigid::region::collecting::collect_region;
 use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
-use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among};
+use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among, is_plain};
 use crate::rigid::settings::RegionSteps;
 use crate::rigid::shares::{HALF_ZONE, ROUNDS};
 use crate::rigid::stepping::ending::end_step;
@@ -44,7 +43,7 @@ pub(crate) fn handle_step(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
 pub(crate) fn has_gone_by_steps(rooms: &mut Rooms, work: &mut EventWork) -> Result<bool, AdvanceError> {
     let Some(steps) = rooms.assembly.settings().region_steps else { return Ok(false) };
     let region = &work.region;
-    let is_plain = region.bodies().iter().all(|&body| is_plain(&rooms.assembly, &rooms.connectors, body));
+    let is_plain = region.bodies().iter().all(|&body| is_plain(&rooms.view(), body));
     let has_stepped = !region.steps().is_empty();
     let is_due = charge_event(&rooms.assembly, &mut rooms.zeno, region.bodies(), region.records());
     let goes_on = is_plain && (is_due || has_stepped);
@@ -60,13 +59,6 @@ pub(crate) fn has_gone_by_steps(rooms: &mut Rooms, work: &mut EventWork) -> Resu
         collect_again(rooms, work);
     }
     Ok(goes_on)
-}
-
-/// True for a body that only contacts and a uniform acceleration act on.
-fn is_plain(assembly: &Assembly, connectors: &Connectors, body: BodyId) -> bool {
-    connectors.of(body).is_empty()
-        && assembly.force_laws().of(body).is_empty()
-        && !assembly.trajectory(body).free_motion().is_damped()
 }
 
 /// Takes the seeds, and all that touch them, from one step to the next.

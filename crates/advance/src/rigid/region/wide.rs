@@ -2,6 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::pairs::Link;
+use crate::rigid::group::groups::group_of;
 use crate::rigid::region::collecting::collect_mates;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
@@ -15,7 +16,7 @@ use halfgap_geometry::FeatureId;
 pub(crate) const JOINED: f64 = 2.0;
 
 /// Collects the bodies that touch some seeds, or each other, within the slack of a step, with the records of all places where
-/// they may touch each other or a fixed body within it. Each body is where it is now, in flight or not.
+/// they may touch each other or a fixed body within it; bodies that do not step are left out. Each body is where it is now, in flight or not.
 pub(crate) fn collect_wide(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: RegionSteps) {
     collect(view, region, seeds, steps, true);
 }
@@ -30,10 +31,24 @@ pub(crate) fn collect_wide_among(
     collect(view, region, bodies, steps, false);
 }
 
+/// True for a body that only contacts and a uniform acceleration act on: others do not step.
+pub(crate) fn is_plain(view: &View<'_>, body: BodyId) -> bool {
+    view.connectors.of(body).is_empty()
+        && view.assembly.force_laws().of(body).is_empty()
+        && !view.assembly.trajectory(body).free_motion().is_damped()
+}
+
+/// True for a body that steps, unless it moves along with one that does not.
+fn may_join(view: &View<'_>, body: BodyId) -> bool {
+    is_plain(view, body)
+        && group_of(view.assembly, view.groups, body)
+            .is_none_or(|group| group.bodies().iter().all(|&mate| is_plain(view, mate)))
+}
+
 fn collect(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: RegionSteps, all: bool) {
     let now = view.assembly.now();
     region.clear(view.assembly.body_count());
-    for &seed in seeds.iter().filter(|seed| view.assembly.is_movable(**seed)) {
+    for &seed in seeds.iter().filter(|seed| view.assembly.is_movable(**seed) && is_plain(view, **seed)) {
         region.add(seed);
     }
     let mut next = 0;
@@ -45,7 +60,8 @@ fn collect(view: &View<'_>, region: &mut Region, seeds: &[BodyId], steps: Region
         let moving = view.assembly.trajectory(body).moving_at(now);
         for &Link { other, .. } in view.pairs.of_body(body) {
             let place = region.place(other);
-            let is_out = !all && place.is_none() && view.assembly.is_movable(other);
+            let is_movable = view.assembly.is_movable(other);
+            let is_out = is_movable && place.is_none() && !(all && may_join(view, other));
             if is_out || place.is_some_and(|earlier| earlier < next) {
                 continue;
             }
