@@ -6,15 +6,14 @@
 //!
 //! Source: M. Silcowitz, S. Niebe, K. Erleben, The Visual Computer 26 (2010) (nonlinear conjugate gradients over sweeps).
 
+use crate::rigid::shares::MAJOR;
 use crate::rigid::stepping::rows::StepRow;
 
-/// Number of sweeps there and back after which a residual may be [`COARSE`] times as large: what closes still is stopped in the
+/// Number of sweeps there and back after which a residual may be [`MAJOR`] times as large: what closes still is stopped in the
 /// next step. With 50 the piles overlap as much and take half as long again.
 const FINE_SWEEPS: usize = 15;
 /// Largest number of sweeps there and back. With 15 a wall of bricks that falls goes down into its floor.
 const MOST_SWEEPS: usize = 150;
-/// Factor by which the residual may be larger after `FINE_SWEEPS` [-].
-const COARSE: f64 = 100.0;
 
 /// Changes velocities so that the rows which act have a rate of at least the opposite of their offset, with impulses that only
 /// push. They begin with the impulses that they have; those of other rows become zero.
@@ -38,7 +37,7 @@ pub(crate) fn sweep(
             row.before = row.impulse;
         }
         let most = rows.iter_mut().map(|row| visit(row, velocities)).fold(0.0, f64::max);
-        if most <= residual || round >= FINE_SWEEPS && most <= COARSE * residual {
+        if most <= residual || round >= FINE_SWEEPS && most <= MAJOR * residual {
             return;
         }
         for row in rows.iter_mut().rev() {

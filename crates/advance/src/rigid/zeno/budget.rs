@@ -7,7 +7,7 @@
 //! between heavy ones, is followed, however often it is; and what is slow is followed as long as it is few.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::shares::LARGE;
+use crate::rigid::shares::{LARGE, SEVERAL};
 use crate::rigid::zeno::memory::Zeno;
 use crate::time::Time;
 use halfgap_collision::{BodyId, Collision};
@@ -16,9 +16,6 @@ use halfgap_collision::{BodyId, Collision};
 const BUDGET: f64 = 2000.0;
 /// Units that a body regains in the span of a step of its region [-].
 const REGAINED: f64 = 10.0;
-
-/// Number of spans in which nothing happens after which a body goes on by events [-].
-const CALM_SPANS: f64 = 50.0;
 
 /// What a body has spent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,7 +40,8 @@ impl Spent {
         self.units += units;
         self.by_steps |= self.units >= BUDGET;
         if self.by_steps {
-            self.units = self.units.min(CALM_SPANS * REGAINED);
+            // Calm for as long as it takes to regain that, it goes on by events.
+            self.units = self.units.min(BUDGET / SEVERAL);
         }
     }
 }
@@ -85,5 +83,25 @@ pub(crate) fn spend_all(zeno: &mut Zeno, bodies: impl Iterator<Item = BodyId>, n
         let spent = &mut zeno.spent[body.index()];
         spent.at = now;
         spent.spend(BUDGET);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_spent_at_once_makes_a_body_step_until_it_is_regained() {
+        let (mut zeno, body, span) = (Zeno::new(1), [BodyId(0)], 1e-3);
+        let mut spends = |units: f64, spans: f64| {
+            let now = Time::ZERO.plus(spans * span);
+            charge(&mut zeno, body.into_iter(), units, now, span)
+        };
+        assert!(!spends(0.9 * BUDGET, 0.0), "it has not spent all");
+        assert!(!spends(0.9 * BUDGET, BUDGET / REGAINED), "it has regained what it had spent");
+        assert!(spends(0.2 * BUDGET, BUDGET / REGAINED));
+        let calm = BUDGET / (SEVERAL * REGAINED);
+        assert!(spends(0.0, BUDGET / REGAINED + 0.9 * calm), "it is not calm yet");
+        assert!(!spends(0.0, BUDGET / REGAINED + 1.1 * calm));
     }
 }

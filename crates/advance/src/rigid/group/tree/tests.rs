@@ -8,6 +8,7 @@ use crate::rigid::group::physics::Physics;
 use crate::rigid::group::stage::{Stage, set_body_state};
 use crate::rigid::group::state::Group;
 use crate::rigid::remedies::{Remedies, RemedySet};
+use crate::rigid::shares::{ROUNDED_FORCE, SMALL, TINY};
 use crate::rigid::test_scene::FINE;
 use crate::time::Time;
 use glam::DVec2;
@@ -195,10 +196,8 @@ impl Told {
 }
 
 fn agree(by_rows: &[f64], by_tree: &[f64]) -> bool {
-    // Largest difference as a fraction of the largest rate, or of 1 [-].
-    let rounding: f64 = 1e-9;
     let largest = by_rows.iter().fold(1.0f64, |most, rate| most.max(rate.abs()));
-    by_rows.iter().zip(by_tree).all(|(a, b)| (a - b).abs() <= rounding * largest)
+    by_rows.iter().zip(by_tree).all(|(a, b)| (a - b).abs() <= ROUNDED_FORCE * largest)
 }
 
 proptest! {
@@ -297,11 +296,9 @@ fn slot_beside_a_pin(masses: [f64; 2], second: On, normal: DVec2) -> Scene {
 fn what_softness_leaves_lacking_is_made_good() {
     // The row of a slot that pushes bodies nearly towards their pins has a kept share of some millionths.
     let scene = slot_beside_a_pin([1.0, 2.0], On::World, DVec2::new(2.0, 1.01));
-    // More than some millionths [-].
-    let little: f64 = 1e-5;
     let told = scene.told();
     assert_eq!(told.coordinates, 2);
-    assert!(told.kept < little, "{}", told.kept);
+    assert!(told.kept < SMALL * TINY, "{}", told.kept);
     assert!(told.agrees(), "{told:?}");
 }
 
@@ -309,13 +306,13 @@ fn what_softness_leaves_lacking_is_made_good() {
 fn what_a_light_body_passes_on_to_a_heavy_one_is_not_softened() {
     // A slot that pushes a light body towards its pin moves only the heavy body: a fraction of the light one's square
     // that is below all softness. The lighter the light body, the less its mass matters.
-    // Masses [kg] of the light body.
-    let (a_milligram, a_microgram): (f64, f64) = (1e-6, 1e-9);
-    let of = |mass| slot_beside_a_pin([mass, 1.0], On::Nothing, DVec2::new(2.0, 1.0)).told();
-    let [light, lighter] = [a_milligram, a_microgram].map(of);
+    let of_milligrams = |milligrams: f64| {
+        slot_beside_a_pin([milligrams / 1e6, 1.0], On::Nothing, DVec2::new(2.0, 1.0)).told()
+    };
+    let [light, lighter] = [1.0, 1.0 / 1000.0].map(of_milligrams);
     assert_eq!(lighter.coordinates, 4);
     assert!(lighter.kept > WELL_KEPT, "{}", lighter.kept);
     let difference =
         light.by_rows.iter().zip(&lighter.by_tree).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(difference < a_milligram, "{light:?}\n{lighter:?}");
+    assert!(difference < 1.0 / 1e6, "{light:?}\n{lighter:?}");
 }
