@@ -51,12 +51,13 @@ pub(crate) struct Rooms {
 
 impl Rooms {
     /// Makes the rooms of the given parts, with all bodies in flight and nothing predicted.
-    pub(crate) fn new(parts: RigidParts, mut settings: RigidSettings, start: Time) -> Self {
+    pub(crate) fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Self {
         // Steps know contacts and uniform accelerations only; bodies that go from steps to groups with more are not sound yet.
         let is_plain = parts.connectors.is_empty()
             && parts.force_laws.is_empty()
             && parts.bodies.iter().all(|part| !part.free_motion.is_damped());
-        settings.region_steps = settings.region_steps.filter(|_| is_plain);
+        let region_steps = settings.region_steps.filter(|_| is_plain);
+        let settings = RigidSettings { region_steps, ..settings };
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;
         let trajectory =
             |BodyPart { body, free_motion, state }| Trajectory::new(body, free_motion, state, start);
