@@ -20,7 +20,7 @@ mod structure;
 
 use crate::exchanges::Exchanges;
 use crate::order::RowOrder;
-use crate::settings::{DOUBTFUL, Settings};
+use crate::settings::{DELICATE, DOUBTFUL, Settings};
 use factor::Factor;
 use refining::Refining;
 use structure::Shared;
@@ -83,7 +83,7 @@ pub struct ActiveRows {
     is_soft: bool,
     /// Fraction of each row's square that earlier rows leave, without the raise.
     kept: Vec<f64>,
-    /// True if earlier rows leave little of an independent row.
+    /// True if earlier rows leave less than [`DELICATE`] of an independent row.
     is_delicate: bool,
     refining: Refining,
     exchanges: Exchanges,
@@ -174,7 +174,7 @@ impl ActiveRows {
             let independent = left > self.dependence * diagonal
                 || (raised == 0.0 && left > RESOLVED * diagonal && self.moves_by_itself(place));
             self.factor.set_inverse_pivot(place, if independent { 1.0 / left } else { 0.0 });
-            self.is_delicate |= is_doubtful && independent;
+            self.is_delicate |= independent && raised == 0.0 && left <= DELICATE * diagonal;
             if !independent {
                 dependent += 1;
                 self.note_shares(place, diagonal);
