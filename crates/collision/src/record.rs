@@ -269,6 +269,14 @@ impl Collision {
         self.geometry.distance - self.tolerances.target_gap
     }
 
+    /// True if a corner touches something that is not straight: the normal turns about it.
+    #[must_use]
+    #[inline]
+    pub fn turns_about_corner(&self) -> bool {
+        let radii = [self.geometry.radius_primary, self.geometry.radius_normal];
+        radii.contains(&Some(0.0)) && !radii.contains(&None)
+    }
+
     /// The distance and its rate, as the predicates take them.
     #[must_use]
     #[inline]

@@ -246,10 +246,11 @@ pub(crate) fn is_active_contact(pairs: &Pairs, record: &Collision, bodies: [Body
 }
 
 /// `Some(true)` if a record is likely to carry a force, since its contact is active until now; `None` if nothing is
-/// known.
+/// known. Of rows that nearly depend on each other a side is more likely, whose normal stays, than a corner, about which it turns.
 pub(crate) fn is_likely(pairs: &Pairs, record: &Collision) -> Option<bool> {
     let [a, b] = record.bodies();
-    is_active_contact(pairs, record, sorted(a, b)).then_some(true)
+    let is_active = is_active_contact(pairs, record, sorted(a, b));
+    is_active.then_some(true).or_else(|| record.turns_about_corner().then_some(false))
 }
 
 impl PairPast {

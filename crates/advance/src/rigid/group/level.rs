@@ -9,25 +9,17 @@ impl Dynamics<'_> {
     /// Sets accelerations to zero that are only rounding of the contact forces, so that a standing body does not creep
     /// because its sides are level only up to rounding.
     pub(super) fn level(&mut self) {
-        let all: f64 = self.stage.forces.iter().map(|force| force.abs()).sum();
-        let mut bodies = self.stage.accelerations.iter().zip(&self.group.bodies);
-        if !bodies.any(|(acceleration, &body)| self.is_level(acceleration, body, ROUNDED * all)) {
-            return;
-        }
-        let Stage { forces, gross, .. } = &mut *self.stage;
-        gross.clear();
-        gross.resize(self.group.bodies.len(), 0.0);
-        for (sides, force) in self.group.sides.iter().zip(forces.iter()) {
-            sides.iter().flatten().for_each(|&place| gross[place as usize] += force.abs());
-        }
+        let rounded = ROUNDED * self.stage.forces.iter().map(|force| force.abs()).sum::<f64>();
         let mut levels = std::mem::take(&mut self.stage.levels);
         levels.clear();
-        let bodies = self.stage.accelerations.iter().zip(&self.group.bodies).zip(&self.stage.gross);
-        levels.extend(
-            bodies.map(|((acceleration, &body), gross)| self.is_level(acceleration, body, ROUNDED * gross)),
-        );
+        let bodies = self.stage.accelerations.iter().zip(&self.group.bodies);
+        levels.extend(bodies.map(|(acceleration, &body)| self.is_level(acceleration, body, rounded)));
+        let any = levels.contains(&true);
         self.stage.levels = levels;
-        self.keep_pushed();
+        if !any {
+            return;
+        }
+        self.keep_pushed(rounded);
         let Stage { accelerations, levels, .. } = &mut *self.stage;
         for (acceleration, _) in accelerations.iter_mut().zip(levels).filter(|(_, is_level)| **is_level) {
             *acceleration = [0.0; 3];
@@ -46,9 +38,9 @@ impl Dynamics<'_> {
     /// Removes from the level bodies those that a row ties to a body which is not level and for which their
     /// acceleration counts: what is rounding for a light body under large forces need not be so for a heavy one under
     /// small ones.
-    fn keep_pushed(&mut self) {
+    fn keep_pushed(&mut self, rounded: f64) {
         let trajectories = self.physics.mechanism.trajectories;
-        let Stage { jacobians, accelerations, gross, levels, .. } = &mut *self.stage;
+        let Stage { jacobians, accelerations, levels, .. } = &mut *self.stage;
         let mut any = levels.contains(&true) && levels.contains(&false);
         while std::mem::take(&mut any) {
             for (sides, jacobian) in self.group.sides.iter().zip(jacobians.iter()) {
@@ -61,7 +53,7 @@ impl Dynamics<'_> {
                 let row = &jacobian[3 * side..3 * side + 3];
                 let pushed: f64 = row.iter().zip(&accelerations[level]).map(|(j, a)| j * a).sum();
                 let inertia = trajectories[self.group.bodies[other].index()].body();
-                if pushed.abs() > ROUNDED * gross[other] * inertia.inverse_mass {
+                if pushed.abs() > rounded * inertia.inverse_mass {
                     levels[level] = false;
                     any = true;
                 }
