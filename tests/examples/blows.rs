@@ -1,13 +1,14 @@
-//! Runs generated blows, drops onto seams and strikes on bodies that fit exactly, and lists those that go wrong.
+//! Runs generated blows, drops onto seams and strikes on bodies that fit exactly or with a little play, and lists those that go wrong.
 //!
 //! ```text
 //! cargo run --release -p halfgap-tests --example blows -- 10000 1     # so many drops and fits, from a seed on
 //! cargo run --release -p halfgap-tests --example blows -- drop 4711   # prints the scene of a seed
 //! cargo run --release -p halfgap-tests --example blows -- fit 4711
+//! cargo run --release -p halfgap-tests --example blows -- tight 4711  # one with a little play
 //! ```
 
-use halfgap_tests::blows::{check_drop, check_fit};
-use halfgap_tests::generate::{all_laws, drop_of_seed, struck_fit_of_seed};
+use halfgap_tests::blows::{check_drop, check_fit, check_tight};
+use halfgap_tests::generate::{all_laws, drop_of_seed, struck_fit_of_seed, tight_fit_of_seed};
 use std::time::Instant;
 
 /// Tolerances at which each drop is run.
@@ -18,6 +19,8 @@ const ELASTICITIES: [f64; 4] = [1.0, 0.7, 0.3, 0.0];
 const LISTED: usize = 40;
 /// Drops for each fit.
 const DROPS_PER_FIT: u64 = 5;
+/// Time [s] from which a run is slow.
+const SLOW: f64 = 2.0;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -25,6 +28,7 @@ fn main() {
     match arguments.first().map(String::as_str) {
         Some("drop") => println!("{:#}", drop_of_seed(number(1).unwrap_or(1)).scene),
         Some("fit") => println!("{:#}", struck_fit_of_seed(number(1).unwrap_or(1), "hybrid", 1.0)),
+        Some("tight") => println!("{:#}", tight_fit_of_seed(number(1).unwrap_or(1), "hybrid", 1.0)),
         _ => count(number(0).unwrap_or(1000), number(1).unwrap_or(1)),
     }
 }
@@ -61,6 +65,27 @@ fn count(drops: u64, first: u64) {
         "{fits} fits by six laws and four elasticities: {} wrong, {:.1?}",
         wrong.len(),
         started.elapsed()
+    );
+    wrong.iter().take(LISTED).for_each(|line| println!("{line}"));
+    wrong.clear();
+    let (mut longest, mut slow) = (0.0f64, 0);
+    for seed in first..first + fits {
+        for &law in all_laws() {
+            for elasticity in ELASTICITIES {
+                let started = Instant::now();
+                let outcome = check_tight(seed, law, elasticity);
+                let took = started.elapsed().as_secs_f64();
+                longest = longest.max(took);
+                slow += u32::from(took > SLOW);
+                if let Err(why) = outcome {
+                    wrong.push(format!("tight {seed} by {law} of {elasticity}: {why}"));
+                }
+            }
+        }
+    }
+    println!(
+        "{fits} tight fits likewise: {} wrong, {slow} took more than {SLOW} s, the longest {longest:.2} s",
+        wrong.len()
     );
     wrong.iter().take(LISTED).for_each(|line| println!("{line}"));
 }

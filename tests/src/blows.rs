@@ -1,6 +1,6 @@
 //! Checks of single blows: the energy that a body keeps of a blow, and that walls are not pressed apart for nothing.
 
-use crate::generate::{Drop, drop_of_seed, struck_fit_of_seed};
+use crate::generate::{Drop, drop_of_seed, struck_fit_of_seed, tight_fit_of_seed};
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{BodyId, BodyState, Event, World};
 use serde_json::json;
@@ -16,6 +16,8 @@ const LANDING: f64 = 1e-4;
 const LEVEL: f64 = 1e-12;
 /// Number of events after which a single blow has gone wrong.
 const MOST_EVENTS: usize = 20_000;
+/// Number of events in which a body with a little play must come to its end: one with a play of 1e-6 m takes some 1e5.
+const MOST_EVENTS_OF_PLAY: u64 = 1_000_000;
 
 /// The impacts of a run, and the total energy [J] at its start and end.
 struct Blows {
@@ -118,4 +120,25 @@ pub fn check_fit(seed: u64, law: &str, elasticity: f64) -> Result<(), String> {
         return Err(format!("{share} of the energy is left of {elasticity}"));
     }
     Ok(())
+}
+
+/// Strikes the body of a seed that fits with a little play, under a law, and follows it to its end; tells the number of events.
+///
+/// # Errors
+/// What went wrong, in words.
+pub fn check_tight(seed: u64, law: &str, elasticity: f64) -> Result<u64, String> {
+    let scene = tight_fit_of_seed(seed, law, elasticity).to_string();
+    let scene = Scene::parse(&scene, SceneFormat::Json).map_err(|error| format!("illegal: {error}"))?;
+    let mut world = World::from_scene(&scene).map_err(|error| format!("not built: {error}"))?;
+    let start = world.energy().total();
+    let mut events = 0;
+    let outcome = world.advance_for(scene.run.end_time(), MOST_EVENTS_OF_PLAY, &mut |_| events += 1);
+    match outcome {
+        Err(error) => Err(format!("stopped: {error}")),
+        Ok(ControlFlow::Break(())) => Err(format!("{MOST_EVENTS_OF_PLAY} events by {} s", world.time())),
+        Ok(ControlFlow::Continue(())) if world.energy().total() > start * (1.0 + KEPT) => {
+            Err(format!("{} J become {} J", start, world.energy().total()))
+        }
+        Ok(ControlFlow::Continue(())) => Ok(events),
+    }
 }

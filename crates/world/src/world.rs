@@ -46,7 +46,7 @@ pub struct Statistics {
     pub steps: u64,
     /// Number of evaluations of the accelerations of a group of bodies by integrators; closed forms need none.
     pub evaluations: u64,
-    /// Number of impacts.
+    /// Number of impacts, each contact that came fast within a step of `region_steps` counted as one.
     pub impacts: u64,
     /// Number of times that an event cut the motion of a body short, in flight or in a group.
     pub backups: u64,

@@ -74,3 +74,22 @@ pub fn struck_fit_of_seed(seed: u64, law: &str, elasticity: f64) -> Value {
         "body": bodies,
     })
 }
+
+/// The struck fit of a seed with a play [m] of a size between 1e-14 and 1e-3 between its walls, at a tolerance of its own.
+#[must_use]
+pub fn tight_fit_of_seed(seed: u64, law: &str, elasticity: f64) -> Value {
+    let mut random = Random::new(seed ^ 0x7196_4000);
+    let mut scene = struck_fit_of_seed(seed, law, elasticity);
+    let play = 10f64.powf(random.between(-14.0, -3.0));
+    scene["run"]["tolerance"] = json!(random.one_of(&[1e-4, 1e-6, 1e-8, 1e-10]));
+    for body in scene["body"].as_array_mut().into_iter().flatten() {
+        let side = match body["name"].as_str() {
+            Some("left") => -0.5,
+            Some("right") => 0.5,
+            _ => continue,
+        };
+        let place = body["position"][0].as_f64().unwrap_or_default();
+        body["position"][0] = json!(place + side * play);
+    }
+    scene
+}

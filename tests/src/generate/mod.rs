@@ -8,11 +8,13 @@
 mod fits;
 mod seams;
 mod shapes;
+mod stacks;
 mod ties;
 mod variations;
 
-pub use fits::struck_fit_of_seed;
+pub use fits::{struck_fit_of_seed, tight_fit_of_seed};
 pub use seams::{Drop, drop_of_seed};
+pub use stacks::mixed_stack_of_seed;
 pub use variations::variation_of_seed;
 
 use crate::random::Random;

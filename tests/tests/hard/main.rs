@@ -13,6 +13,7 @@ mod dips;
 mod driven;
 mod events;
 mod extremes;
+mod faults;
 mod folds;
 mod grazing;
 mod held;

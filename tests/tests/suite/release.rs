@@ -302,7 +302,7 @@ fn a_disc_that_lies_lower_than_its_target_gap_slides_over_a_seam_without_a_bump(
         advance(&mut world, 2.0);
         let state = world.state(ball);
         assert_eq!(world.statistics().impacts, 0, "from a gap of {gap} m");
-        assert!((state.position - DVec2::new(1.0, 0.5 + gap)).length() < 1e-9, "{state:?}");
+        assert!((state.position - DVec2::new(1.0, 0.5 + GAP)).length() < 1e-9, "{state:?}");
         assert!((state.velocity - DVec2::X).length() < 1e-12, "{state:?}");
     }
 }

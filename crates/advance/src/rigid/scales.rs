@@ -3,7 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::remedies::RemedySet;
 use crate::rigid::settings::{RegionSteps, RigidSettings, StepControl};
-use crate::rigid::shares::{NEGLIGIBLE, TINY};
+use crate::rigid::shares::{LARGE, NEGLIGIBLE, TINY};
 use halfgap_collision::{SearchSettings, Tolerances};
 use halfgap_contact::{ImpactLaw, ImpactOrder};
 use halfgap_geometry::Aabb;
@@ -19,9 +19,6 @@ const GAP_ROUNDINGS: f64 = 512.0;
 const REST: f64 = 1e-8;
 /// Error of one step as a fraction of the tolerance, at the finest tolerance.
 const LOCAL_SHARE: f64 = 0.25;
-/// Way that forces move a body in a step of a region whose events accumulate, as a fraction of the smallest body's radius
-/// [-]; that of `start_overlap`, by which a scene's shapes may be off.
-const SLACK_SHARE: f64 = 1e-6;
 /// Finest tolerance that rounding leaves room for [-].
 const FINEST_TOLERANCE: f64 = 1e-12;
 
@@ -141,7 +138,7 @@ impl RigidSettings {
             projection: true,
             extra: None,
             impulse_step: None,
-            region_steps: region_steps(&tolerances, scales),
+            region_steps: region_steps(tolerance, &tolerances, scales),
             without: RemedySet::default(),
             joint_small_impacts: false,
             rest_speed,
@@ -179,14 +176,21 @@ fn resolution_time(tolerances: &Tolerances, scales: &Scales) -> f64 {
     }
 }
 
-/// Steps of regions whose events accumulate: forces move a body by `SLACK_SHARE` of the smallest one, or through half of
-/// the target zone if that is wider. Without forces there are none, as nothing comes back, and neither where the zone can be
-/// seen: few events fit into so coarse a run.
-fn region_steps(tolerances: &Tolerances, scales: &Scales) -> Option<RegionSteps> {
+/// Steps of regions whose events accumulate, none where the zone can be seen: few events fit into so coarse a run. What they
+/// may be off cannot be seen beside the smallest body, and is no more than sqrt(`tolerance`) times its radius, or half of the target
+/// zone if that is wider: a tolerance a hundred times as fine asks for three times as many. Forces move a body so far in one; without
+/// forces it goes much farther, as nothing comes back to where it was but what others keep there.
+fn region_steps(tolerance: f64, tolerances: &Tolerances, scales: &Scales) -> Option<RegionSteps> {
     let radius = scales.smallest_radius.filter(|radius| tolerances.accuracy <= TINY * radius)?;
-    let slack = tolerances.accuracy.max(SLACK_SHARE * radius);
-    let span = (2.0 * slack / scales.acceleration).sqrt();
-    (scales.acceleration > 0.0).then_some(RegionSteps { span, slack })
+    let slack = tolerances.accuracy.max(TINY.min(tolerance.sqrt()) * radius);
+    let slow = tolerances.velocity_tol;
+    if scales.acceleration > 0.0 {
+        let span = (2.0 * slack / scales.acceleration).sqrt();
+        Some(RegionSteps { span, slack, slow: slow.max(2.0 * slack / span) })
+    } else {
+        let speed = scales.speed_scale();
+        (speed > 0.0).then_some(RegionSteps { span: LARGE * slack / speed, slack, slow })
+    }
 }
 
 #[cfg(test)]

@@ -53,15 +53,8 @@ pub struct RegionSteps {
     pub span: f64,
     /// Way [m] that forces move a body from rest within a step; what a step may be off.
     pub slack: f64,
-}
-
-impl RegionSteps {
-    /// Speed [m/s] that forces give a body in a step.
-    #[must_use]
-    #[inline]
-    pub fn slow(&self) -> f64 {
-        2.0 * self.slack / self.span
-    }
+    /// Speed [m/s] that forces give a body in a step, or that of a slow contact where there are none.
+    pub slow: f64,
 }
 
 /// Control of the steps of groups: their acceptable errors and their bound.

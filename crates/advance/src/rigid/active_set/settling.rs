@@ -228,6 +228,13 @@ impl Settling {
 }
 
 impl Settling {
+    /// Holds the active contacts at the gaps of their records, measured anew.
+    pub(crate) fn hold_where_they_are(&mut self, region: &Region) {
+        for (index, row) in self.active.iter_mut().filter(|(_, row)| row.touch().is_some()) {
+            row.set_gap(region.records()[*index].geometry.distance);
+        }
+    }
+
     /// The active rows, with the index of each one's record.
     #[inline]
     pub(crate) fn active(&self) -> &[(usize, ActiveRow)] {

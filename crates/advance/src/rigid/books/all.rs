@@ -62,6 +62,11 @@ impl Books {
         self.counts.impacts += 1;
     }
 
+    /// Notes that so many contacts have come fast within a step of their region.
+    pub(crate) fn note_impacts_in_steps(&mut self, count: u64) {
+        self.counts.impacts += count;
+    }
+
     /// Takes out the report of the last impact, to be written anew.
     pub(crate) fn take_report(&mut self) -> ImpactReport {
         std::mem::take(&mut self.told.last_impact)

@@ -8,7 +8,7 @@ pub struct Counts {
     pub segments: u64,
     /// Events handled, of all kinds.
     pub events: u64,
-    /// Impacts resolved.
+    /// Impacts resolved, each contact that came fast within a step of a region counted as one.
     pub impacts: u64,
     /// Times that an event cut the motion of a body short, in flight or in a group.
     pub backups: u64,

@@ -11,6 +11,7 @@ use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::corners::leave_loose_corner;
 use crate::rigid::event::groups::regroup;
+use crate::rigid::event::one_gap::bring_to_one_gap;
 use crate::rigid::event::rails::note_rails;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::rules::{lower_insistent, set_rules};
@@ -39,6 +40,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     while leave_loose_corner(rooms, work)? {
         settle_and_still(rooms, work)?;
     }
+    bring_to_one_gap(rooms, work);
     measure_touches(&rooms.assembly, &mut work.region);
     note_gaps(&rooms.assembly, &mut rooms.books, &work.region);
     let touching = work.region.touches().iter().copied().zip(work.region.motions().iter().copied());

@@ -21,19 +21,12 @@ use halfgap_collision::BodyState;
 pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
     let (mut full, mut rounds) = (0, 0);
     while full < FULL_ROUNDS && rounds < ROUNDS {
-        let now = rooms.assembly.now();
-        for &body in work.region.bodies() {
-            book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
-        }
-        let before = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
-        let Some(share) = move_apart(&mut rooms.assembly, &mut rooms.sinking, work) else { break };
+        let Some((way, share)) = find_way_apart(&rooms.assembly, work) else { break };
+        rooms.sinking.note_move(way);
+        let change = displace(rooms, &work.region, &work.lift.shifts);
+        rooms.books.book_projection(change);
         rounds += 1;
         full += u32::from(share == 1.0);
-        let after = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, &work.region);
-        rooms.books.book_projection(after - before);
-        for &body in work.region.bodies() {
-            rooms.search.follow(rooms.assembly.trajectory(body), body);
-        }
         work.seeds.clear();
         work.seeds.extend(work.region.bodies());
         collect_region(&rooms.view(), &mut work.region, &work.seeds, rooms.assembly.now());
@@ -47,33 +40,41 @@ pub(crate) fn put_back(rooms: &mut Rooms, work: &mut EventWork) {
     }
 }
 
-/// Makes one round; returns the fraction of the displacement that was made, or `None` if nothing had to move.
-fn move_apart(assembly: &mut Assembly, sinking: &mut Sinking, work: &mut EventWork) -> Option<f64> {
+/// Displaces the bodies of a region, which are in flight; returns the change of their potential energy [J].
+pub(super) fn displace(rooms: &mut Rooms, region: &Region, shifts: &[[f64; 3]]) -> f64 {
+    let now = rooms.assembly.now();
+    for &body in region.bodies() {
+        book_damping(&mut rooms.assembly, &mut rooms.books, body, now);
+    }
+    let before = potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, region);
+    for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts) {
+        let state = rooms.assembly.trajectory(body).unwound_at(now);
+        let position = state.position + DVec2::new(x, y);
+        let moved = BodyState { position, angle: state.angle + turn, ..state };
+        rooms.assembly.trajectory_mut(body).fly_from(now, moved);
+        rooms.search.follow(rooms.assembly.trajectory(body), body);
+    }
+    potential_of(&rooms.assembly, &mut rooms.groups, &mut rooms.sinking, region) - before
+}
+
+/// Finds the displacement of one round: leaves it in the buffers, and returns its longest way [m] and the fraction of the whole
+/// displacement that it is; `None` if nothing has to move.
+fn find_way_apart(assembly: &Assembly, work: &mut EventWork) -> Option<(f64, f64)> {
     let EventWork { region, settling, lift, .. } = work;
     if !pose_lift(assembly, region, lift) || settling.solve(&lift.problem).is_err() {
         return None;
     }
-    let Lift { shifts, rows, .. } = lift;
-    shifts.clear();
-    shifts.resize(region.bodies().len(), [0.0; 3]);
-    settling.add_responses(region, rows, |body| assembly.inertia(body), shifts);
-    let longest = longest_way(assembly, region, shifts);
+    lift.find_shifts(assembly, region, settling);
+    let longest = longest_way(assembly, region, &lift.shifts);
     // Farther, gaps are not nearly linear in the displacement.
     let share = if longest.1 > SMALL { SMALL / longest.1 } else { 1.0 };
-    sinking.note_move(share * longest.0);
-    for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts.iter()) {
-        let state = assembly.trajectory(body).unwound_at(assembly.now());
-        let position = state.position + share * DVec2::new(x, y);
-        let moved = BodyState { position, angle: state.angle + share * turn, ..state };
-        let now = assembly.now();
-        assembly.trajectory_mut(body).fly_from(now, moved);
-    }
-    Some(share)
+    lift.shifts.iter_mut().flatten().for_each(|shift| *shift *= share);
+    Some((share * longest.0, share))
 }
 
 /// Longest way of a point of a region's bodies along a displacement (x, y, angle) of each: in metres, and as a
 /// fraction of the body's reach.
-fn longest_way(assembly: &Assembly, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
+pub(super) fn longest_way(assembly: &Assembly, region: &Region, shifts: &[[f64; 3]]) -> (f64, f64) {
     let ways = region.bodies().iter().zip(shifts).map(|(&body, [x, y, turn])| {
         let reach = assembly.trajectory(body).reach();
         let way = libm::hypot(*x, *y) + turn.abs() * reach;

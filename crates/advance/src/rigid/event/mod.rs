@@ -6,7 +6,7 @@
 //!
 //! * velocities: `impacting`, `changing` (active rows change), `resolving`, `steps` (regions whose events accumulate), `intervention` (by the caller), `lift` and `shift`
 //!   (sunk bodies are put back);
-//! * afterwards: `going_on`, `settling`, `hops` (stilled), `corners` (left), `rules` (what the
+//! * afterwards: `going_on`, `settling`, `hops` (stilled), `one_gap` (where contacts are held), `corners` (left), `rules` (what the
 //!   search skips), `telling`;
 //! * groups: `coupling` and `members` (who shares steps), `groups` (made), `life` (from start to end), `cutting`, `rails`
 //!   (hints);
@@ -24,6 +24,7 @@ pub(super) mod intervention;
 pub(super) mod life;
 pub(super) mod lift;
 pub(super) mod members;
+pub(super) mod one_gap;
 pub(super) mod rails;
 pub(super) mod resolving;
 pub(super) mod rooms;

@@ -1,15 +1,13 @@
 //! Regions whose events accumulate go on by steps, and by events again once their budget is whole.
 
-use crate::rigid::active_set::settling::Settling;
 use crate::rigid::agenda::Source;
-use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::report::RowForce;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::cutting::cut_groups;
 use crate::rigid::event::impacting::{collect_again, strike};
+use crate::rigid::event::lift::displace;
 use crate::rigid::event::rooms::{Rooms, with_work};
-use crate::rigid::event::shift::Lift;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::collecting::collect_region;
@@ -17,14 +15,14 @@ use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::{JOINED, collect_wide, collect_wide_among, is_plain};
 use crate::rigid::settings::RegionSteps;
-use crate::rigid::shares::{HALF_ZONE, ROUNDS};
+use crate::rigid::shares::{HALF_ZONE, MINOR, ROUNDS, SMALL};
+use crate::rigid::stepping::displacements::find_way_to_target;
 use crate::rigid::stepping::ending::end_step;
 use crate::rigid::stepping::step::step_on;
 use crate::rigid::zeno::budget::{charge_event, spend_all};
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::stepped::Pressed;
-use glam::DVec2;
-use halfgap_collision::{BodyId, BodyState};
+use halfgap_collision::{BodyId, Tolerances};
 
 /// Handles the end of the step that a body leads.
 pub(crate) fn handle_step(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
@@ -132,7 +130,7 @@ fn predict_coasting(rooms: &mut Rooms, region: &Region) {
 fn leave(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<(), AdvanceError> {
     let now = rooms.assembly.now();
     if !bring_to_target(rooms, work, steps) {
-        spend_all(&mut rooms.zeno, work.seeds.iter().copied(), now);
+        spend_all(&mut rooms.zeno, work.seeds.iter().copied());
         return go_by_steps(rooms, work, steps);
     }
     collect_region(&rooms.view(), &mut work.region, &work.seeds, now);
@@ -147,43 +145,28 @@ fn leave(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> Result<
 }
 
 /// Moves the seeds, which are in flight, by the least displacement that leaves no gap below its target and brings contacts to it that
-/// are a little above. False if some gaps are then below it all the same.
+/// are a little above. False if some bodies then
+/// overlap by more than contacts may sink; where bodies fit in more tightly than the target asks, gaps stay less.
 fn bring_to_target(rooms: &mut Rooms, work: &mut EventWork, steps: RegionSteps) -> bool {
-    let zone = HALF_ZONE * rooms.assembly.settings().tolerances.accuracy;
-    for _ in 0..ROUNDS {
+    let Tolerances { target_gap, accuracy, .. } = rooms.assembly.settings().tolerances;
+    let deepest = -(1.0 + SMALL) * target_gap;
+    for round in 0..=ROUNDS {
         collect_wide_among(&rooms.view(), &mut work.region, &work.seeds, steps);
-        let EventWork { region, settling, lift, .. } = &mut *work;
-        if pose_displacement(&rooms.assembly, region, lift, steps) >= -zone {
-            return true;
+        let rows = (JOINED * steps.slack, MINOR * MINOR * accuracy);
+        let least = find_way_to_target(&rooms.assembly, &work.region, &mut work.stepper, rows);
+        if least >= -HALF_ZONE * accuracy || round == ROUNDS {
+            return least >= deepest;
         }
-        if settling.solve(&lift.problem).is_err() {
-            return false;
-        }
-        add_displacement(&rooms.assembly, region, settling, lift);
-        let longest = lift.shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
+        let shifts = work.stepper.shifts();
+        let longest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
         // Others may be as near as that, or come as near from their side.
         if longest > 0.5 * JOINED * steps.slack {
             return false;
         }
-        displace(rooms, &work.region, &work.lift.shifts);
-        follow(rooms, &work.region);
+        let change = displace(rooms, &work.region, shifts);
+        rooms.books.book_steps(change);
     }
     false
-}
-
-/// Displaces the bodies of a region.
-fn displace(rooms: &mut Rooms, region: &Region, shifts: &[[f64; 3]]) {
-    let Rooms { assembly, books, .. } = rooms;
-    let now = assembly.now();
-    for (&body, &[x, y, turn]) in region.bodies().iter().zip(shifts) {
-        let before = assembly.trajectory(body).unwound_at(now);
-        let shift = DVec2::new(x, y);
-        let moved = BodyState { position: before.position + shift, angle: before.angle + turn, ..before };
-        let trajectory = assembly.trajectory(body);
-        let gain = trajectory.free_motion().acceleration.dot(shift) / trajectory.body().inverse_mass;
-        books.book_steps(-gain);
-        assembly.trajectory_mut(body).fly_from(now, moved);
-    }
 }
 
 /// Tells the search how the bodies of a region move now.
@@ -191,29 +174,4 @@ fn follow(rooms: &mut Rooms, region: &Region) {
     for &body in region.bodies() {
         rooms.search.follow(rooms.assembly.trajectory(body), body);
     }
-}
-
-/// Sets up the least displacement; returns the least gap above its target [m], or 0.
-fn pose_displacement(assembly: &Assembly, region: &Region, lift: &mut Lift, steps: RegionSteps) -> f64 {
-    let target_gap = assembly.settings().tolerances.target_gap;
-    region.begin(&mut lift.problem, |body| assembly.inertia(body));
-    lift.rows.clear();
-    let mut least = 0.0f64;
-    for (index, record) in region.records().iter().enumerate() {
-        let gap = record.geometry.distance - target_gap;
-        if gap > JOINED * steps.slack {
-            continue;
-        }
-        least = least.min(gap);
-        let Some(row) = region.row_of(record, gap) else { continue };
-        lift.problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
-        lift.rows.push(index);
-    }
-    least
-}
-
-fn add_displacement(assembly: &Assembly, region: &Region, settling: &Settling, lift: &mut Lift) {
-    lift.shifts.clear();
-    lift.shifts.resize(region.bodies().len(), [0.0; 3]);
-    settling.add_responses(region, &lift.rows, |body| assembly.inertia(body), &mut lift.shifts);
 }

@@ -4,8 +4,9 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::rows::row_of;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::touching::Region;
+use crate::rigid::shares::WAY_OF_A_STEP;
 use crate::rigid::zeno::stepped::Pressed;
-use halfgap_collision::BodyAcceleration;
+use halfgap_collision::{BodyAcceleration, Collision};
 
 /// A contact of a step.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +24,10 @@ pub(crate) struct StepRow {
     pub(crate) compliance: f64,
     /// Gap above its target [m].
     pub(crate) gap: f64,
-    /// Acceleration of the gap [m/s^2] at constant velocities.
+    /// Acceleration of the gap [m/s^2] at constant velocities, as long as the contact stays on its features.
     pub(crate) bend: f64,
+    /// Speed at which the contact runs along an arc, in sizes of the smaller body [1/s].
+    pub(crate) running: f64,
     pub(crate) elasticity: f64,
     /// Speed [m/s] at which it closed as the last step began, or closes now if it was in none.
     pub(crate) approach: f64,
@@ -48,6 +51,12 @@ pub(crate) struct StepRow {
 }
 
 impl StepRow {
+    /// Acceleration of the gap [m/s^2] in a step of a length `span` [s]. A contact of a nearly straight arc that soon runs off its
+    /// features bends for an instant only.
+    pub(crate) fn bend_within(&self, span: f64) -> f64 {
+        if self.running * span <= WAY_OF_A_STEP { self.bend } else { 0.0 }
+    }
+
     /// Rate [m/s] of its gap at given velocities.
     #[inline]
     pub(crate) fn rate(&self, velocities: &[[f64; 3]]) -> f64 {
@@ -95,6 +104,7 @@ pub(crate) fn list_rows(
             compliance,
             gap,
             bend: record.motion.kinematics.acceleration(&still, &still),
+            running: running(assembly, record),
             elasticity: row.elasticity,
             approach: before.map_or(0.0, |before| before.approach),
             pressed: before.map(|before| before.impulse),
@@ -111,9 +121,25 @@ pub(crate) fn list_rows(
 }
 
 /// Sets the accelerations of gaps at constant velocities to those of the records, measured anew, from which the rows were listed.
-pub(crate) fn bend_anew(region: &Region, rows: &mut [StepRow]) {
+pub(crate) fn bend_anew(assembly: &Assembly, region: &Region, rows: &mut [StepRow]) {
     let still = BodyAcceleration::default();
     for row in rows {
-        row.bend = region.records()[row.record].motion.kinematics.acceleration(&still, &still);
+        let record = &region.records()[row.record];
+        row.bend = record.motion.kinematics.acceleration(&still, &still);
+        row.running = running(assembly, record);
     }
+}
+
+/// Speed at which a contact runs along an arc of a body, in sizes of the smaller body [1/s]; a disc has no ends.
+fn running(assembly: &Assembly, record: &Collision) -> f64 {
+    let geometry = &record.geometry;
+    let turning = geometry.normal.perp_dot(geometry.normal_rate);
+    let sides = record.bodies().into_iter().zip([geometry.radius_primary, geometry.radius_normal]);
+    let speeds =
+        sides.filter(|&(body, _)| assembly.trajectory(body).disc().is_none()).map(|(body, radius)| {
+            let spin = assembly.moving_at(body, assembly.now()).angular_velocity;
+            radius.map_or(0.0, |radius| ((turning - spin) * radius).abs())
+        });
+    let reaches = record.bodies().map(|body| assembly.trajectory(body).reach());
+    speeds.fold(0.0, f64::max) / reaches[0].min(reaches[1])
 }

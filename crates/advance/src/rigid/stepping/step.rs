@@ -8,10 +8,12 @@ use crate::rigid::region::records::remeasure;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::wide::JOINED;
 use crate::rigid::settings::RegionSteps;
-use crate::rigid::shares::{LARGE, MINOR};
+use crate::rigid::shares::MINOR;
+use crate::rigid::stepping::displacements::find_shifts;
 use crate::rigid::stepping::rows::{StepRow, bend_anew, list_rows};
+use crate::rigid::stepping::spans::{next_span, straight_span};
 use crate::rigid::stepping::sweeps::sweep;
-use crate::rigid::zeno::budget::charge;
+use crate::rigid::zeno::budget::note_step;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::stepped::Pressed;
 use glam::DVec2;
@@ -20,13 +22,13 @@ use halfgap_collision::{BodyId, BodyState};
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stepper {
-    rows: Vec<StepRow>,
+    pub(super) rows: Vec<StepRow>,
     /// Velocities (x, y, angle) of the bodies of the region, and of what cannot move.
     velocities: Vec<[f64; 3]>,
     /// Velocities in the middle of the step.
-    middle: Vec<[f64; 3]>,
+    pub(super) middle: Vec<[f64; 3]>,
     /// Displacements.
-    shifts: Vec<[f64; 3]>,
+    pub(super) shifts: Vec<[f64; 3]>,
     /// Accelerations without contacts.
     accelerations: Vec<[f64; 3]>,
     /// Bodies that are in one step.
@@ -38,17 +40,15 @@ pub(crate) struct Stepper {
     leaving: Leaving,
 }
 
-/// What happens in a part: what it costs is its changes times its contacts, as if events made them one by one.
+/// What happens in a part.
 #[derive(Clone, Copy, Debug, Default)]
 struct Charge {
-    /// Number of contacts that begin or end to press.
-    changes: usize,
+    /// Contacts begin or end to press.
+    changes: bool,
     /// Number of contacts.
     contacts: usize,
     /// Largest speed [m/s] at which one of those closed before, or opens now.
     fastest: f64,
-    /// Least gap above its target [m], or 0.
-    deepest: f64,
 }
 
 /// Bodies whose steps are over, part by part.
@@ -73,6 +73,11 @@ impl Stepper {
         std::mem::take(&mut self.leaving)
     }
 
+    /// The displacements that were found last, one of each body, and one of what cannot move.
+    pub(crate) fn shifts(&self) -> &[[f64; 3]] {
+        &self.shifts
+    }
+
     /// Gives back the buffers of such a list.
     pub(crate) fn put_leaving(&mut self, mut leaving: Leaving) {
         leaving.bodies.clear();
@@ -93,17 +98,20 @@ pub(crate) fn step_on(
     let proposed = zeno.stepped().next_span(region.bodies().len()).unwrap_or(steps.span);
     list_rows(assembly, region, zeno.stepped().ended(), MINOR * steps.slack, &mut stepper.rows);
     read_motions(assembly, region, stepper);
-    if stop_closing(stepper, steps) {
+    let fast = stop_closing(stepper, steps);
+    books.note_impacts_in_steps(fast);
+    if fast > 0 {
         // How gaps bend depends on the velocities.
         for (place, &body) in region.bodies().iter().enumerate() {
             let motion = (stepper.velocities[place], [0.0; 3]);
             move_on(assembly, books, body, motion, false);
         }
         remeasure(assembly, connectors, region, assembly.now());
-        bend_anew(region, &mut stepper.rows);
+        bend_anew(assembly, region, &mut stepper.rows);
     }
     let span = straight_span(&stepper.rows, proposed, steps);
-    find_middle(stepper, span, residual(steps));
+    // It moves a gap by a minor part of the slack.
+    find_middle(stepper, span, MINOR * steps.slack / span);
     find_parts(region, stepper, steps);
     find_shifts(stepper, steps);
     set_off((assembly, books, zeno), region, stepper, (steps, span));
@@ -123,49 +131,49 @@ fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
     stepper.accelerations.push([0.0; 3]);
 }
 
-/// Residual [m/s] of sweeps: in a step it moves a gap by a minor part of the slack.
+/// Rate [m/s] that is as good as none.
 fn residual(steps: RegionSteps) -> f64 {
-    MINOR * steps.slow()
+    MINOR * steps.slow
 }
 
 /// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
-/// have brought. True if any has come fast.
-fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> bool {
+/// have brought. Returns the number of contacts that have come fast since the step before.
+fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> u64 {
     let Stepper { rows, velocities, shifts, .. } = stepper;
-    let (mut any_closes, mut any_fast, mut brought) = (false, false, 0.0);
+    let (mut any_closes, mut fast, mut brought) = (false, 0, 0.0);
     for row in rows.iter_mut().filter(|row| row.touches) {
         let rate = row.rate(velocities);
         if row.pressed.is_none() {
             row.approach = -rate;
         }
         row.impulse = row.stopped_by;
-        let is_fast = row.approach > steps.slow();
+        let is_fast = row.approach > steps.slow;
         row.offset = if is_fast { -row.elasticity * row.approach } else { 0.0 };
         any_closes |= rate + row.offset < 0.0;
-        any_fast |= is_fast;
+        fast += u64::from(is_fast);
         brought += 0.5 * row.approach * row.approach / row.compliance;
     }
     if !any_closes {
-        return false;
+        return 0;
     }
     let before = &mut *shifts;
     before.clone_from(velocities);
-    sweep(rows, velocities, residual(steps), |row| row.touches);
+    sweep(rows, velocities, (residual(steps), 0.0), |row| row.touches);
     // The energy that impulses give is their work at the mean of the rates before and after.
     let given = |rows: &[StepRow], velocities: &[[f64; 3]]| -> f64 {
         rows.iter().map(|row| 0.5 * row.impulse * (row.rate(before) + row.rate(velocities))).sum()
     };
-    if any_fast && given(rows, velocities) > brought {
+    if fast > 0 && given(rows, velocities) > brought {
         velocities.clone_from(before);
         for row in rows.iter_mut() {
             row.offset = 0.0;
         }
-        sweep(rows, velocities, residual(steps), |row| row.touches);
+        sweep(rows, velocities, (residual(steps), 0.0), |row| row.touches);
     }
     for row in rows.iter_mut() {
         row.stopped_by = row.impulse;
     }
-    any_fast
+    fast
 }
 
 /// Joins the bodies that touch, or come to touch within the step.
@@ -194,34 +202,10 @@ fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
     );
     for row in rows.iter_mut() {
         row.approach = (-row.rate(velocities)).max(0.0);
-        row.offset = row.gap.max(0.0) / span + half * row.bend;
+        row.offset = row.gap.max(0.0) / span + half * row.bend_within(span);
         row.impulse = row.pressed.unwrap_or(row.stopped_by);
     }
-    sweep(rows, middle, residual, |_| true);
-}
-
-/// Finds the displacements that bring what overlaps back to its target, if any overlaps by more than a minor part of the slack. They
-/// go no farther than a small multiple of that overlap.
-fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
-    let Stepper { rows, middle, shifts, .. } = stepper;
-    shifts.clear();
-    shifts.resize(middle.len(), [0.0; 3]);
-    let deepest = rows.iter().map(|row| row.gap).fold(0.0, f64::min);
-    if deepest >= -MINOR * steps.slack {
-        return;
-    }
-    // The impulses of the step are kept: they are where the next one begins.
-    for row in rows.iter_mut() {
-        (row.kept, row.impulse, row.offset) = (row.impulse, 0.0, row.gap);
-    }
-    sweep(rows, shifts, MINOR * MINOR * steps.slack, |_| true);
-    let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
-    if farthest > -LARGE * deepest {
-        shifts.fill([0.0; 3]);
-    }
-    for row in rows.iter_mut() {
-        row.impulse = row.kept;
-    }
+    sweep(rows, middle, (residual, 0.0), |_| true);
 }
 
 /// Lets the parts of a region coast that go on by steps; the other bodies get their velocities.
@@ -231,7 +215,7 @@ fn set_off(
     stepper: &mut Stepper,
     (steps, span): (RegionSteps, f64),
 ) {
-    list_parts(region, stepper);
+    list_parts(region, stepper, residual(steps));
     let now = assembly.now();
     let mut parts = std::mem::take(&mut stepper.parts);
     let Stepper { rows, velocities, middle, shifts, accelerations, charges, places, leaving, .. } = stepper;
@@ -241,12 +225,10 @@ fn set_off(
         let length = rest.iter().take_while(|&&place| parts.root(place) == root).count();
         let (part, others) = rest.split_at(length);
         rest = others;
-        let Charge { changes, contacts, fastest, deepest } = charges[root];
-        let units = (changes * contacts) as f64;
+        let Charge { changes, contacts, fastest } = charges[root];
         let bodies = || part.iter().map(|&place| region.bodies()[place]);
         // A body that touches nothing has nothing to step for.
-        let is_sunk = deepest < -MINOR * steps.slack;
-        let goes_on = charge(zeno, bodies(), units, now, steps.span) && contacts > 0 || is_sunk;
+        let goes_on = note_step(zeno, bodies(), changes, now) && contacts > 0;
         if !goes_on {
             for &place in part {
                 let motion = (velocities[place], shifts[place]);
@@ -257,7 +239,11 @@ fn set_off(
             continue;
         }
         let mut stepped = zeno.stepped_mut().take_empty();
-        stepped.begin(now, [span, next_span(steps, span, fastest)]);
+        let speeds = part
+            .iter()
+            .map(|&place| assembly.trajectory(region.bodies()[place]).fastest_point(middle[place]));
+        let speed = speeds.fold(0.0, f64::max);
+        stepped.begin(now, [span, next_span(steps, span, [fastest, speed])]);
         for &place in part {
             stepped.add(region.bodies()[place], accelerations[place]);
         }
@@ -280,42 +266,26 @@ fn set_off(
     stepper.parts = parts;
 }
 
-/// Lists the places of a region part by part, each part by its bodies, and what happens in each part.
-fn list_parts(region: &Region, stepper: &mut Stepper) {
+/// Lists the places of a region part by part, each part by its bodies, and what happens in each part. Contacts that begin or end to
+/// press at no more than a residual [m/s] change nothing.
+fn list_parts(region: &Region, stepper: &mut Stepper, residual: f64) {
     let Stepper { rows, middle, parts, places, charges, .. } = stepper;
     let count = region.bodies().len();
     charges.clear();
     charges.resize(count, Charge::default());
     for row in rows.iter() {
-        let Charge { changes, contacts, fastest, deepest } =
+        let Charge { changes, contacts, fastest } =
             &mut charges[parts.root(row.places[0].min(row.places[1]))];
         *contacts += 1;
-        *deepest = deepest.min(row.gap);
-        if row.pressed.is_some() != (row.impulse > 0.0) {
-            *changes += 1;
-            *fastest = fastest.max(row.approach).max(row.rate(middle));
+        let speed = row.approach.max(row.rate(middle));
+        if row.pressed.is_some() != (row.impulse > 0.0) && speed > residual {
+            *changes = true;
+            *fastest = fastest.max(speed);
         }
     }
     places.clear();
     places.extend(0..count);
     places.sort_unstable_by_key(|&place| (parts.root(place), region.bodies()[place]));
-}
-
-/// Length [s] of the step after one of a length `span`, in which contacts that close or open at up to a speed `fastest` [m/s]
-/// began or ended to press: they may do so at any time of the step, and should not go farther meanwhile than the slack.
-fn next_span(steps: RegionSteps, span: f64, fastest: f64) -> f64 {
-    let longest = LARGE * steps.span;
-    let wanted = if fastest > 0.0 { steps.slack / fastest } else { longest };
-    wanted.min(2.0 * span).clamp(steps.span, longest)
-}
-
-/// Length [s] of a step, at most that proposed, in which contacts that press bend off the straight ways of their bodies by no more than the
-/// slack; no less than the least length.
-fn straight_span(rows: &[StepRow], proposed: f64, steps: RegionSteps) -> f64 {
-    let pressing = rows.iter().filter(|row| row.touches);
-    let most = pressing.map(|row| row.bend.abs()).fold(0.0, f64::max);
-    let straight = if most > 0.0 { (8.0 * steps.slack / most).sqrt() } else { proposed };
-    proposed.min(straight).max(steps.span)
 }
 
 /// Sets a body off with new velocities, from a place to which it is shifted.

@@ -16,11 +16,12 @@ const FINE_SWEEPS: usize = 15;
 const MOST_SWEEPS: usize = 150;
 
 /// Changes velocities so that the rows which act have a rate of at least the opposite of their offset, with impulses that only
-/// push. They begin with the impulses that they have; those of other rows become zero.
+/// push. They begin with the impulses that they have; those of other rows become zero. Rows that are soft, by a part of the mean of
+/// their compliances, share what they lack if they contradict each other.
 pub(crate) fn sweep(
     rows: &mut [StepRow],
     velocities: &mut [[f64; 3]],
-    residual: f64,
+    (residual, softness): (f64, f64),
     acts: impl Fn(&StepRow) -> bool,
 ) {
     for row in rows.iter_mut() {
@@ -31,17 +32,18 @@ pub(crate) fn sweep(
             row.impulse = 0.0;
         }
     }
+    let softness = softness * rows.iter().map(|row| row.compliance).sum::<f64>() / rows.len().max(1) as f64;
     let mut last = f64::INFINITY;
     for round in 0..MOST_SWEEPS {
         for row in rows.iter_mut() {
             row.before = row.impulse;
         }
-        let most = rows.iter_mut().map(|row| visit(row, velocities)).fold(0.0, f64::max);
+        let most = rows.iter_mut().map(|row| visit(row, velocities, softness)).fold(0.0, f64::max);
         if most <= residual || round >= FINE_SWEEPS && most <= MAJOR * residual {
             return;
         }
         for row in rows.iter_mut().rev() {
-            visit(row, velocities);
+            visit(row, velocities, softness);
         }
         let squares = rows.iter().map(|row| (row.impulse - row.before) * (row.impulse - row.before));
         let square = squares.sum::<f64>();
@@ -56,16 +58,17 @@ pub(crate) fn sweep(
     }
     // The last sweep leaves no impulse that pulls.
     for row in rows.iter_mut() {
-        visit(row, velocities);
+        visit(row, velocities, softness);
     }
 }
 
 /// Stops a row that closes, or lets it go if it would pull; returns the change of its rate [m/s].
-fn visit(row: &mut StepRow, velocities: &mut [[f64; 3]]) -> f64 {
+fn visit(row: &mut StepRow, velocities: &mut [[f64; 3]], softness: f64) -> f64 {
     if !row.acts {
         return 0.0;
     }
-    let wanted = row.impulse - (row.rate(velocities) + row.offset) / row.compliance;
+    let lacking = row.rate(velocities) + row.offset + softness * row.impulse;
+    let wanted = row.impulse - lacking / (row.compliance + softness);
     let change = wanted.max(0.0) - row.impulse;
     row.push(velocities, change);
     row.impulse += change;
@@ -93,6 +96,7 @@ mod tests {
                 compliance: 1.0 - carried,
                 gap: 0.0,
                 bend: 0.0,
+                running: 0.0,
                 elasticity: 0.0,
                 approach: 0.0,
                 touches: true,
@@ -115,7 +119,7 @@ mod tests {
         let mut rows = column(count);
         let mut velocities = vec![[0.0, -1.0, 0.0]; count];
         velocities.push([0.0; 3]);
-        sweep(&mut rows, &mut velocities, 1e-12, |_| true);
+        sweep(&mut rows, &mut velocities, (1e-12, 0.0), |_| true);
         let fastest = velocities.iter().map(|v| v[1].abs()).fold(0.0, f64::max);
         assert!(fastest < 1e-4, "{fastest} m/s");
         for (index, row) in rows.iter().enumerate() {
@@ -125,7 +129,7 @@ mod tests {
         // From these impulses one sweep tells that nothing changes.
         let mut again = vec![[0.0, -1.0, 0.0]; count];
         again.push([0.0; 3]);
-        sweep(&mut rows, &mut again, 1e-3, |_| true);
+        sweep(&mut rows, &mut again, (1e-3, 0.0), |_| true);
         assert!(again.iter().all(|v| v[1].abs() < 1e-4), "{again:?}");
     }
 
@@ -133,7 +137,7 @@ mod tests {
     fn rows_that_open_get_no_impulse_and_none_pulls() {
         let mut rows = column(2);
         let mut velocities = vec![[0.0, -1.0, 0.0], [0.0, 3.0, 0.0], [0.0; 3]];
-        sweep(&mut rows, &mut velocities, 1e-12, |_| true);
+        sweep(&mut rows, &mut velocities, (1e-12, 0.0), |_| true);
         assert_eq!(velocities, [[0.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0; 3]]);
         assert_eq!(rows.iter().map(|row| row.impulse).collect::<Vec<_>>(), [1.0, 0.0]);
     }
