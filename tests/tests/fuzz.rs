@@ -459,7 +459,7 @@ fn scenes_that_need_a_remedy_end_worse_without_it() {
 #[test]
 fn blocks_that_hop_lower_than_their_zone_come_to_rest() {
     let scene =
-        Scene::parse(&variation_of_seed(70_000_345).to_string(), SceneFormat::Json).expect("it is a scene");
+        Scene::parse(&variation_of_seed(70_000_524).to_string(), SceneFormat::Json).expect("it is a scene");
     let steps = |without: RemedySet| {
         let mut builder = WorldBuilder::from_scene(&scene).expect("it can be collected");
         builder.settings_mut().without = without;
@@ -468,7 +468,7 @@ fn blocks_that_hop_lower_than_their_zone_come_to_rest() {
         world.statistics().steps
     };
     let (with, without) = (steps(RemedySet::NONE), steps(RemedySet::NONE.with(Remedy::LowHops)));
-    assert!(without > 3 * with, "the lower the hops, the more of them: {without} steps, not {with}");
+    assert!(without > 4 * with, "the lower the hops, the more of them: {without} steps, not {with}");
 }
 
 /// Runs a scene, and requires that it comes to its end and that the world finds nothing wrong with itself but its

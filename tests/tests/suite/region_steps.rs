@@ -1,8 +1,10 @@
 //! Bodies whose events accumulate go on by steps, as long as that lasts, and by events afterwards.
 
 use halfgap::World;
-use halfgap::scene::{Scene, SceneFormat};
+use halfgap::geometry::DVec2;
+use halfgap::scene::Scene;
 use halfgap_tests::data;
+use halfgap_tests::mechanism::{Workshop, at_rest, block, disc};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 
@@ -83,28 +85,11 @@ fn steps_do_not_depend_on_when_a_run_stops_or_is_saved() {
 }
 
 #[test]
-fn a_ball_that_bounces_a_thousand_times_is_followed_bounce_by_bounce() {
-    let scene = r#"
-        format = "halfgap-scene-1"
-        title = "lively ball"
-        [run]
-        duration = 20.0
-        [[body]]
-        name = "floor"
-        fixed = true
-        shape = { block = { width = 10.0, height = 1.0 } }
-        position = [0.0, -0.5]
-        [[body]]
-        name = "ball"
-        shape = { disc = { radius = 0.5 } }
-        mass = 1.0
-        elasticity = 0.97
-        position = [0.0, 0.7]
-        [[force]]
-        gravity = { acceleration = [0.0, -9.81] }
-    "#;
-    let scene = Scene::parse(scene, SceneFormat::Toml).expect("a fine scene");
-    let mut world = world_of(&scene);
+fn a_ball_that_bounces_hundreds_of_times_is_followed_bounce_by_bounce() {
+    let mut shop = Workshop::new(1e-8);
+    shop.fixed("floor", block(10.0, 1.0), DVec2::new(0.0, -0.5));
+    shop.settler("ball", disc(0.5), 1.0, at_rest(0.0, 0.7), 0.97);
+    let mut world = shop.build();
     advance(&mut world, 20.0);
     let statistics = world.statistics();
     assert!(statistics.impacts > 300, "{} impacts", statistics.impacts);
