@@ -1,10 +1,10 @@
 //! Rate, Jacobian and gamma of every kind of feature pair against finite differences of the gap itself.
 
 use crate::differences::{first, second};
-use crate::path::{Path, any_path, any_vector};
+use crate::pairs::{Case, any_case, round};
+use crate::path::Path;
 use glam::DVec2;
-use halfgap_collision::{Arms, BodyAcceleration, GapKinematics};
-use halfgap_geometry::{DirectionRange, Feature, GapSample, LineFeature, RoundFeature};
+use halfgap_collision::BodyAcceleration;
 use proptest::prelude::*;
 
 /// Promised accuracy of the kinematics, relative to the scale of the terms.
@@ -14,88 +14,6 @@ const DIFFERENCE: f64 = 1e-8;
 /// Steps [s] of the differences, at which rounding and truncation stay below the tolerance: order 8, h^8 against
 /// eps/h^2.
 const STEP: f64 = 0.004;
-
-/// Two features and the paths of their bodies.
-#[derive(Clone, Copy, Debug)]
-struct Case {
-    features: [Feature; 2],
-    paths: [Path; 2],
-}
-
-impl Case {
-    fn sample(&self, t: f64) -> GapSample {
-        let [a, b] = self.paths.map(|path| path.at(t).pose);
-        GapSample::measure(&self.features[0], &a, &self.features[1], &b).expect("a pair that can touch")
-    }
-
-    /// The primary side and the normal side.
-    fn sides(&self) -> [Path; 2] {
-        let [a, b] = self.paths;
-        if self.sample(0.0).primary_is_a { [a, b] } else { [b, a] }
-    }
-
-    fn kinematics(&self) -> GapKinematics {
-        let [primary, normal] = self.sides().map(|path| path.at(0.0));
-        GapKinematics::of(&self.sample(0.0), &primary, &normal)
-    }
-
-    /// Size of the terms of which rate and acceleration are sums: [m/s] and [m/s^2].
-    fn scales(&self) -> [f64; 2] {
-        let sample = self.sample(0.0);
-        let [primary, normal] = self.sides();
-        let moments = [primary.at(0.0), normal.at(0.0)];
-        let arms = Arms::of(&sample, &moments[0], &moments[1]);
-        let (mut speed, mut push) = (0.0, 0.0);
-        for (path, arm) in [(primary, arms.primary), (normal, arms.normal)] {
-            speed += path.velocity.length() + path.spin.abs() * arm.length();
-            push += path.push.linear.length() + (path.push.angular.abs() + path.spin.powi(2)) * arm.length();
-        }
-        let distance = (sample.center_primary - sample.center_normal).length();
-        [speed, push + speed * (normal.spin.abs() + speed / distance)]
-    }
-}
-
-fn round(center: DVec2, radius: f64) -> Feature {
-    Feature::Round(RoundFeature { center, radius, range: DirectionRange::Full })
-}
-
-fn line(angle: f64, offset: f64) -> Feature {
-    let normal = DVec2::from_angle(angle);
-    Feature::Line(LineFeature { normal, direction: normal.perp(), offset, start: -1.0, end: 1.0 })
-}
-
-/// The seven kinds of pairs; the numbers give the places of the features in their bodies.
-fn features(kind: usize, centers: [DVec2; 2], [small, size, angle]: [f64; 3]) -> [Feature; 2] {
-    let [a, b] = centers;
-    match kind {
-        0 => [round(a, 0.0), round(b, 0.0)],
-        1 => [round(a, 0.0), round(b, size)],
-        2 => [round(a, 0.0), round(b, -size)],
-        3 => [round(a, small), round(b, size)],
-        4 => [round(a, small), round(b, -size)],
-        5 => [round(a, 0.0), line(angle, size)],
-        _ => [round(a, small), line(angle, size)],
-    }
-}
-
-fn any_case() -> impl Strategy<Value = Case> {
-    let numbers = [0.1..0.5f64, 0.6..2.0f64, -3.2..3.2f64];
-    let centers = prop::array::uniform2(any_vector(1.0));
-    let case = (0..7usize, centers, numbers, prop::array::uniform2(any_path()), any::<bool>());
-    case.prop_map(|(kind, centers, numbers, mut paths, swapped)| {
-        let mut features = features(kind, centers, numbers);
-        if swapped {
-            features.reverse();
-            paths.reverse();
-        }
-        Case { features, paths }
-    })
-    // Where centres meet the gap has a corner, and differences across it mean nothing.
-    .prop_filter("the centres keep apart", |case| {
-        let sample = case.sample(0.0);
-        (sample.center_primary - sample.center_normal).length() > 0.8
-    })
-}
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
