@@ -57,7 +57,7 @@ pub(crate) fn write_problem(folder: &Path, error: Option<&RunError>) -> Result<b
         }
         return Ok(false);
     };
-    let text = ContactFile::of(problem).and_then(|file| file.to_json());
+    let text = ContactFile::of(problem).to_json();
     write(folder, PROBLEM, |out| writeln!(out, "{}", text.map_err(io::Error::other)?))?;
     Ok(true)
 }

@@ -10,8 +10,8 @@ use crate::output;
 use clap::{Args, ValueEnum};
 use halfgap::scene::SceneFormat;
 use halfgap_contact::{
-    Auto, ContactFile, DualActiveSet, FileError, Lemke, Problem, ProximalNewton, Qp, Residuals, Settings,
-    Solution, SolutionFile, SolveError, Solver, WarmStart,
+    Auto, ContactFile, DualActiveSet, FileError, Lemke, Modes, Problem, ProximalNewton, Qp, Residuals,
+    RowKind, Settings, Solution, SolutionFile, SolveError, Solver, WarmStart,
 };
 
 /// Start of the formats of scenes.
@@ -45,6 +45,7 @@ enum Choice {
     ProximalNewton,
     Qp,
     Lemke,
+    Modes,
 }
 
 impl Choice {
@@ -55,6 +56,7 @@ impl Choice {
             Choice::ProximalNewton => Box::new(ProximalNewton::default()),
             Choice::Qp => Box::new(Qp::default()),
             Choice::Lemke => Box::new(Lemke::default()),
+            Choice::Modes => Box::new(Modes::default()),
         }
     }
 }
@@ -155,7 +157,7 @@ fn json(method: Choice, problem: &Problem, outcome: &Outcome) -> String {
     file.microseconds = outcome.microseconds;
     file.microseconds_warm = outcome.microseconds_warm;
     if let Err(error) = &outcome.result {
-        let infeasible = matches!(error, SolveError::Infeasible(_));
+        let infeasible = matches!(error, SolveError::Infeasible(_) | SolveError::NoModes { .. });
         if let SolveError::Infeasible(proof) = error {
             file.inconsistency = proof.contradiction;
         }
@@ -191,6 +193,12 @@ fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
                 rows.join(", ")
             );
         }
+        Err(error @ SolveError::NoModes { .. }) => {
+            let _ = writeln!(
+                text,
+                "INFEASIBLE: {error}. The same contacts have impulses at velocity level, which stop the sliding at once."
+            );
+        }
         Err(error) => {
             let _ = writeln!(text, "FAILED: {error}.");
         }
@@ -203,7 +211,7 @@ fn explain(file: &ContactFile, problem: &Problem, outcome: &Outcome) -> String {
 fn compare(text: &mut String, file: &ContactFile, outcome: &Outcome) {
     let found = match &outcome.result {
         Ok(()) => Some(true),
-        Err(SolveError::Infeasible(_)) => Some(false),
+        Err(SolveError::Infeasible(_) | SolveError::NoModes { .. }) => Some(false),
         Err(_) => None,
     };
     let says = |feasible: bool| if feasible { "has a solution" } else { "has none" };
@@ -238,13 +246,7 @@ fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {
     let _ = writeln!(text, "{:>6}  {:>16}  {:>16}  state", "row", "force", "acceleration");
     for row in rows {
         let (force, acceleration) = (solution.force[row], solution.acceleration[row]);
-        let state =
-            match (problem.bilateral()[row], force != 0.0, solution.active.binary_search(&row).is_ok()) {
-                (true, _, _) => "connector",
-                (false, true, _) => "carries force",
-                (false, false, true) => "closed, no force",
-                (false, false, false) => "free",
-            };
+        let state = state(problem.kind(row), force, solution, row);
         let (force, acceleration) = (given(force), given(acceleration));
         let _ = writeln!(text, "{row:>6}  {force:>16}  {acceleration:>16}  {state}");
     }
@@ -257,6 +259,22 @@ fn explain_answer(text: &mut String, problem: &Problem, outcome: &Outcome) {
         solution.iterations,
         times(outcome)
     );
+}
+
+/// Returns what a row does, in words.
+fn state(kind: RowKind, force: f64, solution: &Solution, row: usize) -> &'static str {
+    let is_closed = solution.active.binary_search(&row).is_ok();
+    match (kind, force != 0.0, is_closed) {
+        (RowKind::Bilateral, _, _) => "connector",
+        (RowKind::Friction { normal, .. }, _, _) if solution.force[normal] == 0.0 => "free",
+        (RowKind::Friction { .. }, _, true) => "sticks",
+        (RowKind::Friction { .. }, _, false) => "slips",
+        (RowKind::Bounded { .. }, _, true) => "holds",
+        (RowKind::Bounded { .. }, _, false) => "at its bound",
+        (_, true, _) => "carries force",
+        (_, false, true) => "closed, no force",
+        (_, false, false) => "free",
+    }
 }
 
 fn times(outcome: &Outcome) -> String {

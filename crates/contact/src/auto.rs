@@ -5,6 +5,7 @@
 use crate::check::Checker;
 use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::{SettingsError, SolveError};
+use crate::friction::FrictionMethods;
 use crate::islands::{Islands, KEPT};
 use crate::lemke::Lemke;
 use crate::problem::Problem;
@@ -38,7 +39,7 @@ const CLEAR: f64 = 16.0 * f64::EPSILON;
 
 /// Solver that chooses a method by size and structure, and another one if that fails.
 ///
-/// Unsymmetric problems go to [`Lemke`]. Others are split into independent islands, solved one by one by the
+/// Problems with friction go to [`Modes`](crate::Modes), then to [`Lemke`], which unsymmetric ones go to at once. Others are split into independent islands, solved one by one by the
 /// [`DualActiveSet`]. Large islands whose contacts are so redundant that many pivots are in sight, or were made, go to
 /// [`ProximalNewton`], in the second case from an interior point. If an answer fails its check, the other methods are
 /// tried, at last Lemke's with twice as many digits.
@@ -55,6 +56,7 @@ pub struct Auto {
     /// Solvers for each of the first islands.
     by_island: Vec<Methods>,
     checker: Checker,
+    friction: FrictionMethods,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -82,8 +84,8 @@ impl Auto {
     /// [`SettingsError`] names a setting that is not positive and finite.
     #[inline]
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
-        let methods = Methods::new(settings)?;
-        Ok(Auto { settings, methods, ..Self::default() })
+        let (methods, friction) = (Methods::new(settings)?, FrictionMethods::new(settings)?);
+        Ok(Auto { settings, methods, friction, ..Self::default() })
     }
 
     fn run(
@@ -92,7 +94,9 @@ impl Auto {
         warm: Option<&WarmStart>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        problem.require_plain(Method::Auto)?;
+        if !problem.is_plain() {
+            return self.friction.solve(problem, warm, solution);
+        }
         let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
         if islands > 1 {
             return self.solve_islands(problem, islands, warm, solution);

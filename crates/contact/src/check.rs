@@ -4,8 +4,9 @@ use halfgap_collision::geometry::Rounded;
 use std::fmt;
 
 use crate::entries::Entries;
+use crate::kind::RowKind;
 use crate::matrix::{BodyRows, Matrix, SparseMatrix};
-use crate::problem::Problem;
+use crate::problem::{Problem, pushing};
 use crate::settings::Settings;
 
 /// Residuals of an answer, computed from the original data alone.
@@ -13,7 +14,9 @@ use crate::settings::Settings;
 /// With s_i = sqrt(A_ii) (1 where A_ii = 0) and a = A f + b:
 ///
 /// * natural residual: r_nat = max_i φ_i / max|b/s|, with φ = |min(s f, a/s)| on a unilateral and |a/s| on a bilateral
-///   row; the denominator is 1 where b = 0;
+///   row; on one whose force is bounded by constants or by friction φ = |s f - P(s f - a/s)|, where P cuts to the bounds
+///   (of friction: to mu times the force of the normal row, if that pushes), so that φ is zero only for forces within
+///   their bounds, or cones, that oppose the slip where they are on them; the denominator is 1 where b = 0;
 /// * growth = max_i Σ_j |A_ij f_j| / s_i / max|b/s|: ratio of the terms of an acceleration to the data, with the same
 ///   denominator;
 /// * backward residual: r_bwd = r_nat / (1 + growth).
@@ -22,7 +25,7 @@ use crate::settings::Settings;
 /// of about growth times 1e-16, so problems with large mass ratios are judged by r_bwd. As r_bwd alone would accept any
 /// answer with huge forces, growth is capped. The thresholds are in [`Settings`]. Source of the natural residual: R.
 /// Cottle, J.-S. Pang, R. Stone, "The Linear Complementarity Problem", 1992, 5.10. An answer that is not finite has
-/// infinite residuals, and so have answers to problems that are not [plain](Problem::is_plain).
+/// infinite residuals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Residuals {
@@ -43,9 +46,6 @@ impl Residuals {
     #[must_use]
     #[inline]
     pub fn of(problem: &Problem, force: &[f64]) -> Self {
-        if !problem.is_plain() {
-            return Self { natural: f64::INFINITY, growth: f64::INFINITY, backward: f64::INFINITY };
-        }
         let mut acceleration = vec![0.0; problem.len()];
         Checker::default().check(problem, force, &mut acceleration)
     }
@@ -110,6 +110,8 @@ pub(crate) struct Checker {
     entries: Entries,
     /// Per row, Σ_j |A_ij f_j|.
     sum: Vec<f64>,
+    /// Along what the forces act, where one acts in another direction than is measured.
+    pushes: SparseMatrix,
 }
 
 impl Checker {
@@ -117,6 +119,9 @@ impl Checker {
     pub(crate) fn check(&mut self, problem: &Problem, force: &[f64], acceleration: &mut [f64]) -> Residuals {
         assert_eq!(force.len(), problem.len(), "one force per row");
         match &problem.matrix {
+            Matrix::Bodies(bodies) if !problem.is_plain() => {
+                self.check_bodies(problem, bodies, force, acceleration)
+            }
             Matrix::Bodies(bodies) => {
                 let mut entries = std::mem::take(&mut self.entries);
                 entries.load(bodies);
@@ -156,7 +161,13 @@ impl Checker {
         force: &[f64],
         acceleration: &mut [f64],
     ) -> Residuals {
-        self.push(bodies, force);
+        let mut pushes = std::mem::take(&mut self.pushes);
+        let is_turned = problem.further.has_directions();
+        if is_turned {
+            problem.further.turn(&bodies.rows, &mut pushes);
+        }
+        let pushed = if is_turned { &pushes } else { &bodies.rows };
+        self.push(pushed, &bodies.inverse_mass, force);
         let mut sums = Sums::default();
         self.bound.clear();
         for (i, out) in acceleration.iter_mut().enumerate() {
@@ -169,10 +180,11 @@ impl Checker {
                 bound += v.abs() * terms;
             }
             *out = change + problem.offset[i];
-            let s = sums.add(diagonal, problem.offset[i], force[i], *out, 0.0, problem.bilateral[i]);
+            let s = sums.add(diagonal, problem.offset[i], force[i], *out, 0.0, problem.bounds(i, force));
             self.bound.push([bound / s, 1.0 / s]);
         }
-        sums.terms = self.largest_terms(bodies, force);
+        sums.terms = self.largest_terms(bodies, pushed, force);
+        self.pushes = pushes;
         sums.finish()
     }
 
@@ -201,19 +213,20 @@ impl Checker {
             *out += b;
             let [_, s, inverse] = entries.diagonal()[i];
             let terms = self.sum[i] * inverse;
-            sums.add_scaled(b * inverse, s * force[i], *out * inverse, terms, problem.bilateral[i]);
+            let bounds = Bounds::plain(problem.bilateral[i]);
+            sums.add_scaled(b * inverse, s * force[i], *out * inverse, terms, bounds);
         }
         sums.finish()
     }
 
     /// Computes M⁻¹ Jᵀ f and the sums of its absolute terms.
-    fn push(&mut self, bodies: &BodyRows, force: &[f64]) {
+    fn push(&mut self, pushed: &SparseMatrix, inverse_mass: &[f64], force: &[f64]) {
         self.velocity.clear();
-        self.velocity.resize(bodies.inverse_mass.len(), [0.0; 2]);
+        self.velocity.resize(inverse_mass.len(), [0.0; 2]);
         for (j, &f) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
-            let (columns, values) = bodies.rows.row(j);
+            let (columns, values) = pushed.row(j);
             for (&k, &v) in columns.iter().zip(values) {
-                let push = v * bodies.inverse_mass[k] * f;
+                let push = v * inverse_mass[k] * f;
                 let [velocity, terms] = &mut self.velocity[k];
                 *velocity += push;
                 *terms += push.abs();
@@ -223,12 +236,12 @@ impl Checker {
 
     /// max_i Σ_j |A_ij f_j| / s_i. The bound of a row, made of sums by column, is at least its sum, so that only rows
     /// whose bound exceeds the largest sum so far are evaluated.
-    fn largest_terms(&mut self, bodies: &BodyRows, force: &[f64]) -> f64 {
+    fn largest_terms(&mut self, bodies: &BodyRows, pushed: &SparseMatrix, force: &[f64]) -> f64 {
         let Some(top) = (0..force.len()).max_by(|&i, &j| self.bound[i][0].total_cmp(&self.bound[j][0]))
         else {
             return 0.0;
         };
-        self.list(bodies, force);
+        self.list(pushed, &bodies.inverse_mass, force);
         let mut largest = 0.0_f64;
         for i in std::iter::once(top).chain(0..force.len()) {
             let [bound, inverse] = self.bound[i];
@@ -241,8 +254,8 @@ impl Checker {
     }
 
     /// Lists, per column, the rows that carry force.
-    fn list(&mut self, bodies: &BodyRows, force: &[f64]) {
-        let columns = bodies.inverse_mass.len();
+    fn list(&mut self, pushed: &SparseMatrix, inverse_mass: &[f64], force: &[f64]) {
+        let columns = inverse_mass.len();
         self.start.clear();
         self.start.resize(columns + 2, 0);
         self.term.clear();
@@ -250,7 +263,7 @@ impl Checker {
         self.used.reserve(force.len());
         for (j, _) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
             // An immovable column couples no rows, and that of a floor may hold all rows of the problem.
-            let movable = bodies.rows.row(j).0.iter().filter(|k| bodies.inverse_mass[**k] > 0.0);
+            let movable = pushed.row(j).0.iter().filter(|k| inverse_mass[**k] > 0.0);
             movable.for_each(|&k| self.start[k + 2] += 1);
         }
         for k in 2..self.start.len() {
@@ -259,10 +272,10 @@ impl Checker {
         self.entry.clear();
         self.entry.resize(self.start[columns + 1], (0, 0.0));
         for (j, &f) in force.iter().enumerate().filter(|(_, f)| **f != 0.0) {
-            let (row_columns, values) = bodies.rows.row(j);
+            let (row_columns, values) = pushed.row(j);
             let entries = row_columns.iter().zip(values);
-            for (&k, &v) in entries.filter(|(k, _)| bodies.inverse_mass[**k] > 0.0) {
-                self.entry[self.start[k + 1]] = (j, v * bodies.inverse_mass[k] * f);
+            for (&k, &v) in entries.filter(|(k, _)| inverse_mass[**k] > 0.0) {
+                self.entry[self.start[k + 1]] = (j, v * inverse_mass[k] * f);
                 self.start[k + 1] += 1;
             }
         }
@@ -307,9 +320,39 @@ fn check_matrix(
             terms += term.abs();
         }
         *out = change + problem.offset[i];
-        sums.add(diagonal, problem.offset[i], force[i], *out, terms, problem.bilateral[i]);
+        sums.add(diagonal, problem.offset[i], force[i], *out, terms, problem.bounds(i, force));
     }
     sums.finish()
+}
+
+/// Between what a force must lie.
+#[derive(Clone, Copy, Debug)]
+enum Bounds {
+    None,
+    /// Zero, from below.
+    Zero,
+    /// The least and the most.
+    Between(f64, f64),
+}
+
+impl Bounds {
+    fn plain(bilateral: bool) -> Self {
+        if bilateral { Self::None } else { Self::Zero }
+    }
+}
+
+impl Problem {
+    /// The bounds of a row's force, for given forces of all rows.
+    fn bounds(&self, row: usize, force: &[f64]) -> Bounds {
+        match self.further.kind(row) {
+            Some(RowKind::Bounded { least, most }) => Bounds::Between(least, most),
+            Some(RowKind::Friction { normal, coefficient }) => {
+                let most = coefficient * pushing(force[normal]);
+                Bounds::Between(-most, most)
+            }
+            _ => Bounds::plain(self.bilateral[row]),
+        }
+    }
 }
 
 /// Largest values over the rows so far, all scaled.
@@ -331,16 +374,25 @@ impl Sums {
         force: f64,
         acceleration: f64,
         terms: f64,
-        bilateral: bool,
+        bounds: Bounds,
     ) -> f64 {
         let s = if diagonal > 0.0 { diagonal.sqrt() } else { 1.0 };
-        self.add_scaled(b / s, s * force, acceleration / s, terms / s, bilateral);
+        let bounds = match bounds {
+            Bounds::Between(least, most) => Bounds::Between(least * s, most * s),
+            plain => plain,
+        };
+        self.add_scaled(b / s, s * force, acceleration / s, terms / s, bounds);
         s
     }
 
     /// Adds a row whose quantities are scaled.
-    fn add_scaled(&mut self, b: f64, force: f64, acceleration: f64, terms: f64, bilateral: bool) {
-        let residual = if bilateral { acceleration.abs() } else { force.min(acceleration).abs() };
+    fn add_scaled(&mut self, b: f64, force: f64, acceleration: f64, terms: f64, bounds: Bounds) {
+        let residual = match bounds {
+            Bounds::None => acceleration.abs(),
+            Bounds::Zero => force.min(acceleration).abs(),
+            // The cut first, so that an acceleration far below the force does not drown in it.
+            Bounds::Between(least, most) => acceleration.min(force - least).max(force - most).abs(),
+        };
         self.broken |= !(residual.is_finite() && force.is_finite() && acceleration.is_finite());
         self.residual = self.residual.max(residual);
         self.terms = self.terms.max(terms);

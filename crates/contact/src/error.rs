@@ -160,6 +160,13 @@ pub enum SolveError {
         /// Number of pivots or iterations made.
         iterations: usize,
     },
+    /// None of all modes of contacts (open, sticking, slipping either way) gives admissible forces. Problems at velocity
+    /// level have a solution; see [`Jump`](crate::Jump).
+    #[error("no forces satisfy the rows: none of the {combinations} combinations of modes does")]
+    NoModes {
+        /// Number of combinations.
+        combinations: u64,
+    },
     /// The method does not take rows of a kind; see [`RowKind`](crate::RowKind).
     #[error("{method} does not take {kind}: row {row} is one")]
     UnsupportedRow {
@@ -190,7 +197,7 @@ impl SolveError {
         match self {
             Self::Infeasible(infeasibility) => Some(infeasibility.row),
             Self::UnsupportedRow { row, .. } => Some(*row),
-            Self::Unsolved { .. } | Self::NotApplicable { .. } => None,
+            Self::Unsolved { .. } | Self::NoModes { .. } | Self::NotApplicable { .. } => None,
         }
     }
 }

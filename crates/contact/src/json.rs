@@ -8,6 +8,7 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use crate::error::ProblemError;
+use crate::kind::RowKind;
 use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::Problem;
 use crate::solution::Solution;
@@ -16,7 +17,7 @@ const PROBLEM_FORMAT: &str = "halfgap-contact-1";
 const SOLUTION_FORMAT: &str = "halfgap-solution-1";
 
 /// Fields of [`ContactFile`].
-const FIELDS: [&str; 13] = [
+const FIELDS: [&str; 15] = [
     "format",
     "title",
     "family",
@@ -27,6 +28,8 @@ const FIELDS: [&str; 13] = [
     "b",
     "b_next",
     "bilateral",
+    "friction",
+    "bounds",
     "feasible",
     "reference_force",
     "expected",
@@ -61,14 +64,6 @@ pub enum FileError {
     /// The file has both `A` and `J`, which exclude each other.
     #[error("the fields `A` and `J` exclude each other: which of them is the problem?")]
     Both,
-    /// A problem has a row for which the format has no fields.
-    #[error("row {row} is {kind}, which a file of a contact problem cannot hold")]
-    UnsupportedRow {
-        /// Index of the row.
-        row: usize,
-        /// Words for its kind.
-        kind: &'static str,
-    },
     /// The numbers are not a contact problem.
     #[error("{0}")]
     Problem(#[from] ProblemError),
@@ -106,6 +101,12 @@ pub struct ContactFile {
     /// One flag per row, true if it is bilateral; none is if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bilateral: Option<Vec<bool>>,
+    /// The rows that are bounded by friction.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub friction: Vec<FrictionField>,
+    /// The rows that are bounded by constants.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bounds: Vec<BoundsField>,
     /// Whether a solution exists, as far as a test knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub feasible: Option<bool>,
@@ -141,6 +142,31 @@ pub struct RowsField {
     pub columns: usize,
     /// Row, column, coefficient (x and y \[1\], rotation \[m\]); coefficients at the same place add up.
     pub triplets: Vec<(usize, usize, f64)>,
+}
+
+/// A row bounded by friction: |f| ≤ coefficient times the force of the normal row; see
+/// [`RowKind::Friction`](crate::RowKind::Friction).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrictionField {
+    /// Index of the tangential row.
+    pub row: usize,
+    /// Index of the normal row, which is unilateral.
+    pub normal: usize,
+    /// Coefficient of friction mu \[-\].
+    pub coefficient: f64,
+}
+
+/// A row bounded by constants; see [`RowKind::Bounded`](crate::RowKind::Bounded).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundsField {
+    /// Index of the row.
+    pub row: usize,
+    /// Least force \[N\]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least: Option<f64>,
+    /// Most force \[N\]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most: Option<f64>,
 }
 
 /// Expected accelerations and, where unique, forces.
@@ -195,25 +221,40 @@ impl ContactFile {
         fields.into_keys().filter(|field| !FIELDS.contains(&field.as_str())).collect()
     }
 
-    /// Makes the file of `problem`, to be replayed later. Keys of rows are not part of it.
-    ///
-    /// # Errors
-    ///
-    /// [`FileError::UnsupportedRow`] for a problem that is not [plain](Problem::is_plain): the format has no fields for it.
-    pub fn of(problem: &Problem) -> Result<Self, FileError> {
-        if let Some((row, kind)) = problem.unplain_row() {
-            return Err(FileError::UnsupportedRow { row, kind });
-        }
+    /// Makes the file of `problem`, to be replayed later. Keys of rows are not part of it; a problem with forces that act
+    /// in other directions than are measured is given by its A.
+    #[must_use]
+    pub fn of(problem: &Problem) -> Self {
         let mut file = ContactFile {
             format: PROBLEM_FORMAT.to_owned(),
-            symmetric: problem.is_symmetric(),
+            symmetric: problem.is_symmetric() && !problem.further.has_directions(),
             b: problem.offset().to_vec(),
             ..Self::default()
         };
         if problem.bilateral().contains(&true) {
             file.bilateral = Some(problem.bilateral().to_vec());
         }
+        for (row, kind) in problem.further.kinds() {
+            match kind {
+                RowKind::Unilateral | RowKind::Bilateral => {}
+                RowKind::Friction { normal, coefficient } => {
+                    file.friction.push(FrictionField { row, normal, coefficient });
+                }
+                RowKind::Bounded { least, most } => {
+                    let [least, most] = [least, most].map(|bound| bound.is_finite().then_some(bound));
+                    file.bounds.push(BoundsField { row, least, most });
+                }
+            }
+        }
         match &problem.matrix {
+            Matrix::Bodies(_) if problem.further.has_directions() => {
+                let entries = problem.dense();
+                let triplets = (0..problem.len()).flat_map(|i| {
+                    let row = entries[i].iter().enumerate();
+                    row.filter(|(_, value)| **value != 0.0).map(move |(j, &value)| (i, j, value))
+                });
+                file.a = Some(MatrixField::Sparse { n: problem.len(), triplets: triplets.collect() });
+            }
             Matrix::Bodies(bodies) => {
                 let (rows, columns) = (bodies.rows.rows(), bodies.inverse_mass.len());
                 file.j = Some(RowsField { rows, columns, triplets: triplets(&bodies.rows) });
@@ -223,7 +264,7 @@ impl ContactFile {
                 file.a = Some(MatrixField::Sparse { n: matrix.rows(), triplets: triplets(matrix) });
             }
         }
-        Ok(file)
+        file
     }
 
     /// Writes the file as JSON.
@@ -252,8 +293,27 @@ impl ContactFile {
         if let Some(bilateral) = &self.bilateral {
             problem.set_bilateral(bilateral)?;
         }
+        self.set_kinds(&mut problem)?;
         self.check_answers()?;
         Ok(problem)
+    }
+
+    /// Sets the kinds of the rows that are bounded.
+    fn set_kinds(&self, problem: &mut Problem) -> Result<(), FileError> {
+        let friction = self.friction.iter().map(|&FrictionField { row, normal, coefficient }| {
+            (row, RowKind::Friction { normal, coefficient })
+        });
+        let bounds = self.bounds.iter().map(|&BoundsField { row, least, most }| {
+            let [least, most] = [least.unwrap_or(f64::NEG_INFINITY), most.unwrap_or(f64::INFINITY)];
+            (row, RowKind::Bounded { least, most })
+        });
+        for (row, kind) in friction.chain(bounds) {
+            if row >= problem.len() {
+                return Err(ProblemError::NoSuchRow { row, rows: problem.len() }.into());
+            }
+            problem.set_kind(row, kind)?;
+        }
+        Ok(())
     }
 
     /// Checks that known answers have a number for each row.

@@ -4,6 +4,7 @@
 //! without them costs nothing for them.
 
 use crate::error::{ProblemError, SolveError};
+use crate::matrix::SparseMatrix;
 use crate::problem::Problem;
 use crate::solver::Method;
 use crate::words;
@@ -63,14 +64,15 @@ impl RowKind {
     }
 
     /// Refuses bounds that are none, and a normal row that is not a unilateral one of `problem`.
-    fn check(&self, row: usize, problem: &Problem) -> Result<(), ProblemError> {
+    pub(crate) fn check(&self, row: usize, problem: &Problem) -> Result<(), ProblemError> {
         match *self {
             Self::Unilateral | Self::Bilateral => Ok(()),
             // NaN is no bound.
             Self::Bounded { least, most } if least <= most => Ok(()),
             Self::Bounded { least, most } => Err(ProblemError::BadBounds { row, least, most }),
             Self::Friction { normal, coefficient } => {
-                let is_contact = normal < problem.len() && problem.kind(normal) == Self::Unilateral;
+                let is_contact =
+                    normal != row && normal < problem.len() && problem.kind(normal) == Self::Unilateral;
                 if !is_contact {
                     return Err(ProblemError::NotAContact { row, normal });
                 }
@@ -81,8 +83,26 @@ impl RowKind {
     }
 }
 
-/// Coefficients of a force for x, y \[1\] and rotation \[m\] of the primary, then of the normal side.
-pub(crate) type Direction = [[f64; 3]; 2];
+/// The direction of a force: the bodies of the primary and of the normal side, `None` for an immovable one, and the
+/// coefficients for x, y \[1\] and rotation \[m\] of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Direction {
+    pub(crate) bodies: [Option<u32>; 2],
+    pub(crate) coefficients: [[f64; 3]; 2],
+}
+
+impl Direction {
+    /// Columns and coefficients.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (usize, f64)> {
+        let Self { bodies, coefficients } = *self;
+        let sides = bodies.into_iter().zip(coefficients);
+        sides.flat_map(|(body, coefficients)| {
+            let first = body.map(|body| 3 * body as usize);
+            (0..3).filter_map(move |k| first.map(|first| (first + k, coefficients[k])))
+        })
+    }
+}
 
 /// The rows of a problem that are not plain, ascending.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,6 +112,11 @@ pub(crate) struct FurtherRows(Vec<(usize, RowKind, Option<Direction>)>);
 impl FurtherRows {
     pub(crate) fn clear(&mut self) {
         self.0.clear();
+    }
+
+    /// Forgets the rows from `rows` on.
+    pub(crate) fn truncate(&mut self, rows: usize) {
+        self.0.retain(|further| further.0 < rows);
     }
 
     fn find(&self, row: usize) -> Option<&(usize, RowKind, Option<Direction>)> {
@@ -108,6 +133,45 @@ impl FurtherRows {
         self.find(row).and_then(|further| further.2)
     }
 
+    /// True if a force acts in a direction of its own.
+    pub(crate) fn has_directions(&self) -> bool {
+        self.0.iter().any(|further| further.2.is_some())
+    }
+
+    /// Writes along what the forces act to `pushes`, for rows that measure `rows`. Columns of a turned row may come twice.
+    pub(crate) fn turn(&self, rows: &SparseMatrix, pushes: &mut SparseMatrix) {
+        pushes.clone_from(&SparseMatrix::new());
+        for row in 0..rows.rows() {
+            match self.direction(row) {
+                Some(direction) => {
+                    pushes.column.extend(direction.entries().map(|entry| entry.0));
+                    pushes.value.extend(direction.entries().map(|entry| entry.1));
+                }
+                None => {
+                    let (columns, values) = rows.row(row);
+                    pushes.column.extend_from_slice(columns);
+                    pushes.value.extend_from_slice(values);
+                }
+            }
+            pushes.start.push(pushes.column.len());
+        }
+    }
+
+    /// The rows that are not plain, or whose force acts in a direction of its own, and their kinds.
+    pub(crate) fn kinds(&self) -> impl Iterator<Item = (usize, RowKind)> + '_ {
+        self.0.iter().filter(|further| !further.1.is_plain()).map(|&(row, kind, _)| (row, kind))
+    }
+
+    /// Sets the kind of a row.
+    pub(crate) fn set_kind(&mut self, row: usize, kind: RowKind) {
+        match self.0.binary_search_by_key(&row, |further| further.0) {
+            Ok(place) if kind.is_plain() && self.0[place].2.is_none() => drop(self.0.remove(place)),
+            Ok(place) => self.0[place].1 = kind,
+            Err(_) if kind.is_plain() => {}
+            Err(place) => self.0.insert(place, (row, kind, None)),
+        }
+    }
+
     /// Refuses bounds and directions that are none, of the row that is to be added to a problem.
     pub(crate) fn check_row(
         row: usize,
@@ -116,9 +180,9 @@ impl FurtherRows {
         problem: &Problem,
     ) -> Result<(), ProblemError> {
         kind.check(row, problem)?;
-        let mut numbers = direction.iter().flatten().flatten();
+        let mut numbers = direction.iter().flat_map(|direction| direction.coefficients).flatten();
         match numbers.find(|number| !number.is_finite()) {
-            Some(&value) => Err(ProblemError::NotFinite { row, what: "a coefficient of the force", value }),
+            Some(value) => Err(ProblemError::NotFinite { row, what: "a coefficient of the force", value }),
             None => Ok(()),
         }
     }
@@ -133,7 +197,7 @@ impl FurtherRows {
 
 impl Problem {
     /// Refuses, in the name of a method, a problem that has other rows than unilateral and bilateral ones whose forces act
-    /// in the directions that are measured. No method of this crate takes others yet.
+    /// in the directions that are measured.
     ///
     /// # Errors
     ///

@@ -12,11 +12,12 @@
 use faer::Mat;
 
 use crate::bimatrix::is_bimatrix_game;
-use crate::check::Checker;
+use crate::check::{Checker, Residuals};
 use crate::dense_lu::DenseLu;
 use crate::dependent::{dot, make_orthogonal};
 use crate::dictionary::Dictionary;
 use crate::error::{Infeasibility, SettingsError, SolveError};
+use crate::friction::PlainForm;
 use crate::matrix::{Matrix, SparseMatrix};
 use crate::problem::{Problem, pushing};
 use crate::settings::Settings;
@@ -282,6 +283,26 @@ impl Lemke {
         }
     }
 
+    /// Solves the plain form of a problem with friction.
+    #[cold]
+    fn solve_friction(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
+        let unsolved = |residuals, iterations| {
+            Err(SolveError::Unsolved { method: Method::Lemke, residuals, iterations })
+        };
+        let Ok(form) = PlainForm::of(problem) else { return unsolved(Residuals::default(), 0) };
+        let mut plain = Solution::new();
+        self.solve(&form.problem, &mut plain).map_err(|error| form.error(error))?;
+        solution.reset(problem.len(), Method::Lemke);
+        form.forces(&plain.force, &mut solution.force);
+        solution.active.extend((0..problem.len()).filter(|&row| solution.force[row] != 0.0));
+        (solution.iterations, solution.inconsistency) = (plain.iterations, plain.inconsistency);
+        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        if solution.residuals.accepted(&self.settings, solution.inconsistency) {
+            return Ok(());
+        }
+        unsolved(solution.residuals, solution.iterations)
+    }
+
     /// Solves a problem with twice as many digits at once. Returns whether there is an accepted answer, or the proof if
     /// it is certain that there is none.
     pub(crate) fn solve_twofold(
@@ -482,7 +503,9 @@ impl Solver for Lemke {
     }
 
     fn solve(&mut self, problem: &Problem, solution: &mut Solution) -> Result<(), SolveError> {
-        problem.require_plain(Method::Lemke)?;
+        if !problem.is_plain() {
+            return self.solve_friction(problem, solution);
+        }
         (self.pivots, self.is_certain) = (0, false);
         self.prepare(problem);
         let mut doubtful = None;

@@ -37,6 +37,7 @@
 //! | `dual_active_set`, `start`, `descent`, `spread`, `crossover`, `exchanges`, `closed_rows`, `skyline`, `order`, `dependent`, `raised`, `least_norm` | [`DualActiveSet`] |
 //! | `proximal_newton`, `interior_point`, `body_factor`, `line_search`, `certificate` | [`ProximalNewton`] |
 //! | `lemke`, `bimatrix`, `dictionary`, `dense_lu`, `twofold` | [`Lemke`], for unsymmetric problems |
+//! | `friction` | [`Modes`], for rows bounded by friction or constants; [`Jump`] |
 //! | `qp` | `Qp`, feature `qp` (default; on wasm it needs wasm-bindgen): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
 //! | `active_rows` | [`ActiveRows`]: a fixed set of rows as equations, solved repeatedly |
@@ -64,6 +65,7 @@ mod dual_active_set;
 mod entries;
 mod error;
 mod exchanges;
+mod friction;
 mod impact;
 mod interior_point;
 mod islands;
@@ -99,10 +101,13 @@ pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
+pub use friction::{Jump, JumpError, Modes};
 pub use halfgap_collision as collision;
 pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
 #[cfg(feature = "json")]
-pub use json::{ContactFile, Expected, FileError, MatrixField, RowsField, SolutionFile};
+pub use json::{
+    BoundsField, ContactFile, Expected, FileError, FrictionField, MatrixField, RowsField, SolutionFile,
+};
 pub use kind::RowKind;
 pub use lemke::Lemke;
 pub use problem::{ContactKey, InverseInertia, Problem, ProblemBody, Row};

@@ -127,6 +127,8 @@ pub enum Method {
     Qp,
     /// Lemke's pivoting method.
     Lemke,
+    /// Newton's method on modes of friction.
+    Modes,
     /// A method from outside this crate.
     Other,
 }
@@ -149,6 +151,7 @@ impl Method {
             Method::ProximalNewton => "proximal_newton",
             Method::Qp => "qp",
             Method::Lemke => "lemke",
+            Method::Modes => "modes",
             Method::Other => "other",
         }
     }

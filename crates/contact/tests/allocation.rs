@@ -76,6 +76,38 @@ fn a_warm_solve_of_known_size_allocates_nothing() {
     }
 }
 
+#[test]
+fn a_warm_solve_with_friction_allocates_nothing() {
+    let (mut problem, mut solution, mut warm) = (Problem::new(), Solution::new(), WarmStart::new());
+    let (mut auto, mut before) = (Auto::default(), 0);
+    for step in 0..20 {
+        problem.clear();
+        for i in 0..8 {
+            let body = problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 12.0 }).unwrap();
+            for arm in [-0.5, 0.5] {
+                let offset = if i == 0 { -9.81 } else { 0.0 } - 1e-3 * f64::from((7 * i + 3 * step) % 11);
+                let rows = [Row::new(body, [0.0, 1.0, arm], offset), Row::new(body, [-1.0, 0.0, -0.5], 1e-2)];
+                let [gap, slip] = if i == 0 {
+                    rows
+                } else {
+                    let below = ProblemBody(i as u32 - 1);
+                    [rows[0].against(below, [0.0, -1.0, -arm]), rows[1].against(below, [1.0, 0.0, -0.5])]
+                };
+                problem.add_contact(&gap, &slip, 0.4).unwrap();
+            }
+        }
+        if step == 10 {
+            before = COUNT.with(Cell::get);
+        }
+        match step {
+            0 => auto.solve(&problem, &mut solution).unwrap(),
+            _ => auto.solve_from(&problem, &warm, &mut solution).unwrap(),
+        }
+        warm.remember(&problem, &solution);
+    }
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
+}
+
 /// Fills `problem` with boxes in a pyramid of the given number of layers at one step, each box of its own width:
 /// contacts that nearly depend on each other take many pivots, and are handed over.
 fn fill_crooked(problem: &mut Problem, layers: usize, step: usize) {

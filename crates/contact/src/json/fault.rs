@@ -11,6 +11,8 @@ const NUMBERS: &str = "an array of numbers";
 const FLAGS: &str = "an array of true and false";
 const MATRIX: &str = "rows of numbers, or an object with `n` and `triplets`";
 const TRIPLETS: &str = "an array of entries [row, column, value]";
+const FRICTION: &str = "an object with whole numbers `row` and `normal`, and a number `coefficient`";
+const BOUNDS: &str = "an object with a whole number `row`, and numbers `least` and `most` or one of them";
 const WHOLE: &str = "a whole number that is not negative";
 /// Largest number of characters of a value in a message.
 const LONGEST: usize = 40;
@@ -50,7 +52,19 @@ fn search(file: &Value) -> Search {
         search_array(fields, "", name, NUMBERS, "a number", Value::is_number)?;
     }
     search_array(fields, "", "bilateral", FLAGS, "true or false", Value::is_boolean)?;
+    search_array(fields, "", "friction", "an array of objects", FRICTION, is_friction)?;
+    search_array(fields, "", "bounds", "an array of objects", BOUNDS, is_bounds)?;
     search_expected(fields)
+}
+
+fn is_friction(value: &Value) -> bool {
+    let is_whole = |name: &str| value.get(name).is_some_and(Value::is_u64);
+    is_whole("row") && is_whole("normal") && value.get("coefficient").is_some_and(Value::is_number)
+}
+
+fn is_bounds(value: &Value) -> bool {
+    let is_bound = |name: &str| value.get(name).is_none_or(|bound| bound.is_number() || bound.is_null());
+    value.get("row").is_some_and(Value::is_u64) && is_bound("least") && is_bound("most")
 }
 
 /// Returns the value of a field; `None` if it is missing or null.

@@ -1,5 +1,6 @@
 //! Impact laws and solvers, tested through the public API.
 
+mod friction;
 mod impact_found;
 mod impact_laws;
 mod impact_rows;

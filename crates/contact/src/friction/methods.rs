@@ -1,0 +1,56 @@
+//! The order of methods for problems with friction.
+
+use super::enumeration::{Tried, enumerate};
+use super::modes::Modes;
+use crate::error::{SettingsError, SolveError};
+use crate::lemke::Lemke;
+use crate::problem::Problem;
+use crate::settings::Settings;
+use crate::solution::Solution;
+use crate::solver::Solver;
+use crate::warm::WarmStart;
+
+/// Largest number of rows that Lemke's method tries: its tableau is full, and with more it takes minutes.
+const LEMKE_ROWS: usize = 1000;
+
+/// The methods for problems with friction, one after the other.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct FrictionMethods {
+    settings: Settings,
+    modes: Modes,
+    lemke: Lemke,
+}
+
+impl FrictionMethods {
+    pub(crate) fn new(settings: Settings) -> Result<Self, SettingsError> {
+        Ok(Self { settings, modes: Modes::new(settings)?, lemke: Lemke::new(settings)? })
+    }
+
+    /// Solves by modes; else by Lemke's method, which may prove that there is no solution; else by trying all modes.
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem,
+        warm: Option<&WarmStart>,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        let found = match warm {
+            Some(warm) => self.modes.solve_from(problem, warm, solution),
+            None => self.modes.solve(problem, solution),
+        };
+        let Err(error) = found else { return Ok(()) };
+        if problem.len() > LEMKE_ROWS {
+            return Err(error);
+        }
+        let error = match self.lemke.solve(problem, solution) {
+            Ok(()) => return Ok(()),
+            Err(proof @ SolveError::Infeasible(_)) => return Err(proof),
+            Err(_) => error,
+        };
+        match enumerate(problem, &self.settings, solution) {
+            Tried::Found => Ok(()),
+            Tried::None(combinations) => Err(SolveError::NoModes { combinations }),
+            Tried::TooMany => Err(error),
+        }
+    }
+}
