@@ -16,7 +16,8 @@ use crate::settings::Settings;
 /// * natural residual: r_nat = max_i φ_i / max|b/s|, with φ = |min(s f, a/s)| on a unilateral and |a/s| on a bilateral
 ///   row; on one whose force is bounded by constants or by friction φ = |s f - P(s f - a/s)|, where P cuts to the bounds
 ///   (of friction: to mu times the force of the normal row, if that pushes), so that φ is zero only for forces within
-///   their bounds, or cones, that oppose the slip where they are on them; the denominator is 1 where b = 0;
+///   their bounds, or cones, that oppose the slip where they are on them, and where bounds exclude zero the denominator is
+///   at least s times the least force; it is 1 where b = 0;
 /// * growth = max_i Σ_j |A_ij f_j| / s_i / max|b/s|: ratio of the terms of an acceleration to the data, with the same
 ///   denominator;
 /// * backward residual: r_bwd = r_nat / (1 + growth).
@@ -336,6 +337,14 @@ enum Bounds {
 }
 
 impl Bounds {
+    /// Distance of the bounds from zero: a force that must act is a load, too.
+    fn distance(self) -> f64 {
+        match self {
+            Self::None | Self::Zero => 0.0,
+            Self::Between(least, most) => least.max(-most).max(0.0),
+        }
+    }
+
     fn plain(bilateral: bool) -> Self {
         if bilateral { Self::None } else { Self::Zero }
     }
@@ -396,7 +405,7 @@ impl Sums {
         self.broken |= !(residual.is_finite() && force.is_finite() && acceleration.is_finite());
         self.residual = self.residual.max(residual);
         self.terms = self.terms.max(terms);
-        self.scale = self.scale.max(b.abs());
+        self.scale = self.scale.max(b.abs()).max(bounds.distance());
     }
 
     fn finish(self) -> Residuals {

@@ -17,6 +17,7 @@
 //! | `patience`, `blows` | the end of ricochets, and the number of blows that are none |
 //! | `pair_problem`, `few_rows`, `many_rows` | up to two rows in closed form, up to eight directly, more by the active-set method |
 //! | `locked` | rows at rest that no motion can open |
+//! | `rough` | impacts with friction |
 //! | `near_rows` | rows that nearly depend on each other |
 //! | `couplings` | the Delassus matrix |
 //! | `shuffle` | random orders |
@@ -30,17 +31,20 @@ mod many_rows;
 mod near_rows;
 mod pair_problem;
 mod patience;
+mod rough;
 mod serial;
 mod shuffle;
 mod together;
 
 pub use law::{ImpactError, ImpactLaw, ImpactOrder};
+pub use rough::{FrictionRow, Restitution};
 
 use crate::row::CollisionRow;
 use couplings::Couplings;
 use locked::Locked;
 use many_rows::ManyRows;
 use near_rows::NearRows;
+use rough::Rough;
 
 /// Rounding of rates, as a fraction of the largest change of a rate by one impulse so far.
 const NOISE: f64 = 64.0 * f64::EPSILON;
@@ -72,6 +76,10 @@ pub struct Impact {
     /// Number of complementarity problems solved.
     solves: u64,
     scratch: Scratch,
+    /// Tangential rows, if a row has friction; the memory is kept.
+    rough: Option<Box<Rough>>,
+    is_rough: bool,
+    restitution: Restitution,
 }
 
 /// Buffers of the laws, kept from one impact to the next.
@@ -129,6 +137,7 @@ impl Impact {
         self.scratch.locked.clear();
         self.scratch.turns.clear();
         self.scratch.has_returned = false;
+        self.is_rough = false;
     }
 
     /// Subtracts from each row an impulse [N s] that it carries anyway, such as the force of a contact times a

@@ -30,7 +30,8 @@ pub enum RowKind {
     /// |f| ≤ mu fₙ with the force fₙ of another row, where a = 0 inside the bounds, and a opposes f on them: the tangential
     /// row of a contact with Coulomb friction.
     Friction {
-        /// The unilateral row whose force bounds this one's, added before it.
+        /// The row whose force bounds this one's, added before it: a unilateral one, or one whose least force is not
+        /// negative.
         normal: usize,
         /// Coefficient of friction mu \[-\], 0 or more.
         coefficient: f64,
@@ -56,6 +57,15 @@ impl RowKind {
         }
     }
 
+    /// True for a row whose force is never negative.
+    pub(crate) fn pushes(&self) -> bool {
+        match *self {
+            Self::Unilateral => true,
+            Self::Bounded { least, .. } => least >= 0.0,
+            Self::Bilateral | Self::Friction { .. } => false,
+        }
+    }
+
     /// True for a unilateral and for a bilateral row.
     #[must_use]
     #[inline]
@@ -71,8 +81,7 @@ impl RowKind {
             Self::Bounded { least, most } if least <= most => Ok(()),
             Self::Bounded { least, most } => Err(ProblemError::BadBounds { row, least, most }),
             Self::Friction { normal, coefficient } => {
-                let is_contact =
-                    normal != row && normal < problem.len() && problem.kind(normal) == Self::Unilateral;
+                let is_contact = normal != row && normal < problem.len() && problem.kind(normal).pushes();
                 if !is_contact {
                     return Err(ProblemError::NotAContact { row, normal });
                 }

@@ -100,6 +100,11 @@ impl Lemke {
         Ok(Lemke { settings, ..Self::default() })
     }
 
+    /// Accepts answers with a natural residual up to this.
+    pub(crate) fn set_natural_residual(&mut self, natural_residual: f64) {
+        self.settings.natural_residual = natural_residual;
+    }
+
     /// Notes the entries of A, and scales them.
     fn prepare(&mut self, problem: &Problem) {
         self.matrix = match &problem.matrix {

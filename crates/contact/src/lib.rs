@@ -103,7 +103,7 @@ pub use dual_active_set::DualActiveSet;
 pub use error::{Infeasibility, ProblemError, SettingsError, SolveError};
 pub use friction::{Jump, JumpError, Modes};
 pub use halfgap_collision as collision;
-pub use impact::{Impact, ImpactError, ImpactLaw, ImpactOrder};
+pub use impact::{FrictionRow, Impact, ImpactError, ImpactLaw, ImpactOrder, Restitution};
 #[cfg(feature = "json")]
 pub use json::{
     BoundsField, ContactFile, Expected, FileError, FrictionField, MatrixField, RowsField, SolutionFile,

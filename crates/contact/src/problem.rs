@@ -451,7 +451,7 @@ impl Problem {
             _ => false,
         };
         if let Some((other, _)) = self.further.kinds().find(bounded)
-            && kind != RowKind::Unilateral
+            && !kind.pushes()
         {
             return Err(ProblemError::NotAContact { row: other, normal: row });
         }

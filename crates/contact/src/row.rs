@@ -112,7 +112,7 @@ impl CollisionRow {
 }
 
 /// J M^-1.
-fn response(jacobian: &[f64; 6], [a, b]: [InverseInertia; 2]) -> [f64; 6] {
+pub(crate) fn response(jacobian: &[f64; 6], [a, b]: [InverseInertia; 2]) -> [f64; 6] {
     let weights =
         [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
     std::array::from_fn(|k| jacobian[k] * weights[k])

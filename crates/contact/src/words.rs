@@ -10,6 +10,8 @@ pub(crate) const FINITE_ONLY: &str = "rate, velocity_tol, jacobian and response 
 pub(crate) const ELASTICITY_RANGE: &str = "elasticity must be between 0 and 1";
 pub(crate) const RESPONSE_SIGN: &str =
     "a response must be that of inverse masses and moments that are not negative";
+pub(crate) const FRICTION_RANGE: &str =
+    "friction takes finite numbers, a coefficient of 0 or more and a tangential elasticity between 0 and 1";
 pub(crate) const UNILATERAL: &str = "a unilateral row";
 pub(crate) const BILATERAL: &str = "a bilateral row";
 pub(crate) const BOUNDED: &str = "a row bounded by constants";
@@ -21,11 +23,12 @@ pub(crate) const BODIES_ONLY: &str = "it needs the rows of bodies and their mass
 
 /// All of them.
 #[cfg(feature = "save")]
-const ALL: [&str; 11] = [
+const ALL: [&str; 12] = [
     PLAIN_ONLY,
     FINITE_ONLY,
     ELASTICITY_RANGE,
     RESPONSE_SIGN,
+    FRICTION_RANGE,
     UNILATERAL,
     BILATERAL,
     BOUNDED,

@@ -30,6 +30,8 @@ const SHORT_STEPS: usize = 3;
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Descent {
     modes: Vec<Mode>,
+    /// The modes of the step before.
+    last: Vec<Mode>,
     force: Vec<f64>,
     wanted: Vec<f64>,
     motion: Vec<f64>,
@@ -57,7 +59,7 @@ impl Descent {
             rows.directions().add_to(row, force, &mut self.motion);
         }
         let mut size = self.find_imbalance(rows, center, epsilon);
-        let mut short = 0;
+        let (mut short, mut share) = (0, 0.0);
         for _ in 0..STEPS {
             if size <= enough {
                 std::mem::swap(center, &mut self.force);
@@ -65,14 +67,19 @@ impl Descent {
             }
             *iterations += 1;
             mode::of_forces(rows, &self.wanted, &mut self.modes);
+            // A full step within one piece ends at its solution, up to rounding.
+            if share == 1.0 && self.modes == self.last {
+                std::mem::swap(center, &mut self.force);
+                return true;
+            }
+            self.last.clone_from(&self.modes);
             if !equations.factorise(rows, &self.modes, epsilon, |_, _| {}) {
                 return false;
             }
             self.step.clear();
             self.step.extend(self.imbalance.iter().map(|f| -epsilon * f));
             equations.solve(&mut self.step);
-            let (share, now) = self.search(rows, center, epsilon, size);
-            size = now;
+            (share, size) = self.search(rows, center, epsilon, size);
             short += usize::from(share < SHORT);
             if short > SHORT_STEPS {
                 return false;

@@ -27,6 +27,13 @@ impl FrictionMethods {
         Ok(Self { settings, modes: Modes::new(settings)?, lemke: Lemke::new(settings)? })
     }
 
+    /// Accepts answers with a natural residual up to this.
+    pub(crate) fn set_natural_residual(&mut self, natural_residual: f64) {
+        self.settings.natural_residual = natural_residual;
+        self.modes.set_natural_residual(natural_residual);
+        self.lemke.set_natural_residual(natural_residual);
+    }
+
     /// Solves by modes; else by Lemke's method, which may prove that there is no solution; else by trying all modes.
     pub(crate) fn solve(
         &mut self,

@@ -15,18 +15,21 @@ use crate::solution::Solution;
 use crate::solver::{Method, Solver};
 use crate::warm::WarmStart;
 
-/// ε [-] of a new start, the most, and the least, with which modes are solved: rows are scaled to 1, and with less the
-/// digits of M would be lost beside those of Jᵀ J/ε.
+/// ε [-] with which modes are solved: rows are scaled to 1, and with less the digits of M would be lost beside those of
+/// Jᵀ J/ε; with more, dependent rows would take more corrections.
+const LEAST: f64 = 1e-8;
+/// ε [-] of a new start, the most, and the finest of a descent, whose forces have their rounding over ε.
 const FIRST: f64 = 1.0;
 const MOST: f64 = 1e3;
-const LEAST: f64 = 1e-8;
+const FINEST: f64 = 1e-4;
 /// ε [-] from which on forces tell the modes of the problem: those of rows at rest are known to this share of the load.
 const TELLING: f64 = 1e-3;
 /// Factor of ε after a round that succeeds, after one that fails, and of the ε that failed with each later success.
 const EASIER: f64 = 3.0;
 const HARDER: f64 = 0.2;
 const FORGOTTEN: f64 = 0.7;
-/// Imbalance [-] in units of ε and the load at which a round ends: modes change with less only where they do not matter.
+/// Imbalance [-] in units of ε, of the residual before, and of the load, at which a round ends: modes change with less only
+/// where they do not matter.
 const ENOUGH: f64 = 1e-3;
 /// Cap on rounds. Walls and heaps take some tens; from a thousand on none was seen to end.
 const ROUNDS: usize = 1000;
@@ -64,6 +67,11 @@ impl Modes {
     pub fn new(settings: Settings) -> Result<Self, SettingsError> {
         settings.validate()?;
         Ok(Self { settings, ..Self::default() })
+    }
+
+    /// Accepts answers with a natural residual up to this.
+    pub(crate) fn set_natural_residual(&mut self, natural_residual: f64) {
+        self.settings.natural_residual = natural_residual;
     }
 
     fn run(
@@ -125,10 +133,10 @@ impl Modes {
     /// Starts from the present forces, or from none, and makes ε less round by round.
     #[cold]
     fn descend(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
-        let load = self.rows.offset.iter().fold(0.0, |most: f64, b| most.max(b.abs()));
-        let (mut epsilon, mut floor) = (FIRST, LEAST);
+        let load = self.rows.load_size();
+        let (mut epsilon, mut floor, mut rest) = (FIRST, FINEST, 1.0);
         for _ in 0..ROUNDS {
-            let enough = ENOUGH * epsilon.min(TELLING) * load;
+            let enough = ENOUGH * epsilon.min(TELLING).min(rest) * load;
             let (rows, equations) = (&self.rows, &mut self.equations);
             let numbers = [epsilon, enough];
             if !self.descent.run(rows, equations, &mut self.force, numbers, &mut self.iterations) {
@@ -144,13 +152,14 @@ impl Modes {
                     return true;
                 }
                 self.kept.clone_from(&self.force);
+                rest = solution.residuals.natural;
                 if self.settle(problem, solution) {
                     return true;
                 }
                 self.force.clone_from(&self.kept);
             }
             epsilon = (HARDER * epsilon).max(floor);
-            floor = (FORGOTTEN * floor).max(LEAST);
+            floor = (FORGOTTEN * floor).max(FINEST);
         }
         self.is_accepted(problem, solution)
     }

@@ -201,6 +201,16 @@ impl ScaledRows {
         self.offset.len()
     }
 
+    /// The load: the largest scaled offset, or least force where that must not be zero.
+    pub(super) fn load_size(&self) -> f64 {
+        let least = |bound: &Bound| match *bound {
+            Bound::Constants { least, most } => least.max(-most).max(0.0),
+            _ => 0.0,
+        };
+        let offsets = self.offset.iter().map(|b| b.abs());
+        offsets.chain(self.bound.iter().map(least)).fold(0.0, f64::max)
+    }
+
     /// What the rows measure.
     #[inline]
     pub(super) fn measured(&self) -> &Entries {

@@ -136,11 +136,10 @@ impl Settle {
 
     /// The natural residual of the present forces and accelerations, in units of the load.
     fn natural_residual(&self, rows: &ScaledRows) -> f64 {
-        let (mut most, mut load) = (0.0_f64, 0.0_f64);
+        let (mut most, load) = (0.0_f64, rows.load_size());
         for row in 0..rows.len() {
             let (force, (least, largest)) = (self.force[row], mode::bounds(rows, row, &self.force));
-            let rest = self.acceleration[row].min(force - least).max(force - largest);
-            (most, load) = (most.max(rest.abs()), load.max(rows.offset[row].abs()));
+            most = most.max(self.acceleration[row].min(force - least).max(force - largest).abs());
         }
         if load > 0.0 { most / load } else { most }
     }

@@ -121,8 +121,8 @@ impl PlainForm {
             match self.rows.bound[*row] {
                 Bound::Friction { normal, coefficient } => {
                     let pushed = parts.iter().position(|part| part.row == normal as usize);
-                    triplets.extend(pushed.map(|pushed| (slip, pushed, coefficient)));
-                    offset.push(0.0);
+                    triplets.extend(pushed.map(|pushed| (slip, pushed, coefficient * parts[pushed].sign)));
+                    offset.push(coefficient * self.least[normal as usize]);
                 }
                 Bound::Constants { least, most } => offset.push(most - least),
                 Bound::Unilateral | Bound::Bilateral => offset.push(0.0),

@@ -137,6 +137,9 @@ impl ImpactLaw {
         order: ImpactOrder,
         impact_index: u64,
     ) -> Result<(), ImpactError> {
+        if impact.is_rough {
+            return impact.resolve_rough(self, order, impact_index);
+        }
         let small = impact.begin()?;
         if impact.rows.len() == 1 {
             // The most common impact by far: all laws treat it alike, and it needs no buffers.
@@ -181,12 +184,12 @@ impl ImpactLaw {
         impact.finish(small)
     }
 
-    fn has_last_pass(self) -> bool {
+    pub(super) fn has_last_pass(self) -> bool {
         matches!(self, ImpactLaw::SerialSeparateLastpass | ImpactLaw::SerialGroupedLastpass)
     }
 
     /// The rows that join a focus; `None` if all rows are solved together.
-    fn grouping(self) -> Option<Grouping> {
+    pub(super) fn grouping(self) -> Option<Grouping> {
         match self {
             ImpactLaw::Simultaneous => None,
             ImpactLaw::Hybrid => Some(Grouping::Closing),
@@ -204,6 +207,9 @@ impl Impact {
     /// Those of [`ImpactLaw::resolve`].
     #[inline]
     pub fn resolve_inelastic(&mut self) -> Result<(), ImpactError> {
+        if self.is_rough {
+            return self.stop_all_rough();
+        }
         let small = self.begin()?;
         self.solve_all_inelastic(small)?;
         self.finish(small)
@@ -223,12 +229,12 @@ impl Impact {
     }
 
     /// Speed [m/s] below which no row rebounds: the least `velocity_tol`.
-    fn slow_speed(&self) -> f64 {
+    pub(super) fn slow_speed(&self) -> f64 {
         self.rows.iter().map(|row| row.velocity_tol).fold(f64::INFINITY, f64::min)
     }
 
     /// Checks the rows, and returns the rate [m/s] up to which a row counts as done.
-    fn begin(&mut self) -> Result<f64, ImpactError> {
+    pub(super) fn begin(&mut self) -> Result<f64, ImpactError> {
         if let Some((row, rule)) = self.find_bad_row() {
             return Err(ImpactError::BadRow { row, rule });
         }
@@ -259,7 +265,8 @@ impl Impact {
                 None
             }
         };
-        self.rows.iter().enumerate().find_map(|(index, row)| Some((index, rule(row)?)))
+        let of_row = |(index, row)| Some((index, rule(row)?));
+        self.rows.iter().enumerate().find_map(of_row).or_else(|| self.find_bad_friction())
     }
 
     /// Keeps the rates and impulses with which the rows begin.
@@ -311,6 +318,11 @@ impl Impact {
             self.at_last = false;
             outcome?;
         }
+        self.conclude(small)
+    }
+
+    /// Sets the bound by what is left.
+    pub(super) fn conclude(&mut self, small: f64) -> Result<(), ImpactError> {
         let violation = (0..self.rows.len()).fold(0.0f64, |most, row| most.max(self.violation(row)));
         self.bound = self.rest(small).max(violation);
         self.unfinished().map_or(Ok(()), Err)

@@ -76,7 +76,7 @@ impl Impact {
 
     /// The next focus among the violated rows: the fastest, the last of several that tie, or a random one if there is a
     /// `shuffle`.
-    fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
+    pub(super) fn focus(&self, shuffle: Option<&mut Shuffle>, small: f64) -> Option<usize> {
         let rest = self.rest(small);
         match shuffle {
             None => {
@@ -95,7 +95,7 @@ impl Impact {
 
     /// Target rate [m/s] of a row that is solved alone. The elasticity of a connector acts only here: in a problem with
     /// other rows it could add energy to them.
-    fn rebound_alone(&self, row: usize) -> f64 {
+    pub(super) fn rebound_alone(&self, row: usize) -> f64 {
         let row_data = &self.rows[row];
         let violation = self.violation(row);
         if violation > 0.0 && row_data.rebounds_at(violation) {
@@ -107,6 +107,21 @@ impl Impact {
 
     /// Solves a focus together with the rows that join it. Returns the number of rows.
     fn solve_around(&mut self, focus: usize, grouping: Grouping, small: f64) -> Result<usize, ImpactError> {
+        let set = self.join_focus(focus, grouping, small);
+        let outcome = match set[..] {
+            [row] if grouping == Grouping::One => {
+                self.solve_alone(row, self.rebound_alone(row));
+                Ok(())
+            }
+            _ => self.rebound_together(&set),
+        };
+        let count = set.len();
+        self.scratch.set = set;
+        outcome.map(|()| count)
+    }
+
+    /// Lists a focus and the rows that join it, ascending, in the buffer of sets.
+    pub(super) fn join_focus(&mut self, focus: usize, grouping: Grouping, small: f64) -> Vec<usize> {
         let mut set = std::mem::take(&mut self.scratch.set);
         set.clear();
         set.push(focus);
@@ -120,16 +135,7 @@ impl Impact {
         }
         self.add_tied(&mut set, grouping);
         set.sort_unstable();
-        let outcome = match set[..] {
-            [row] if grouping == Grouping::One => {
-                self.solve_alone(row, self.rebound_alone(row));
-                Ok(())
-            }
-            _ => self.rebound_together(&set),
-        };
-        let count = set.len();
-        self.scratch.set = set;
-        outcome.map(|()| count)
+        set
     }
 
     /// Adds the locked rows, and if connectors join, the bilateral rows that a set reaches through movable bodies,

@@ -8,3 +8,4 @@ mod kinds;
 mod laws;
 #[cfg(feature = "json")]
 mod problems;
+mod rough_impacts;

@@ -3,6 +3,8 @@
 mod cases;
 #[cfg(feature = "json")]
 mod files;
-mod generated;
+pub(crate) mod generated;
 mod judge;
 mod walls;
+
+pub(crate) use generated::Random;
