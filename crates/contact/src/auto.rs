@@ -5,7 +5,7 @@
 use crate::check::Checker;
 use crate::dual_active_set::{DualActiveSet, HandOver};
 use crate::error::{SettingsError, SolveError};
-use crate::friction::FrictionMethods;
+use crate::friction::{FrictionMethods, Recognised};
 use crate::islands::{Islands, KEPT};
 use crate::lemke::Lemke;
 use crate::problem::Problem;
@@ -21,6 +21,10 @@ use crate::warm::WarmStart;
 /// Number of rows from which islands are looked for first. With fewer rows that costs more than it gains, as the factor
 /// of a few islands together is as narrow.
 const SPLIT_ROWS: usize = 48;
+
+/// Number of rows from which contacts with friction are looked for in a general problem: with fewer Lemke's method is as
+/// fast.
+const RECOGNISED_ROWS: usize = 24;
 
 /// Largest number of rows of a symmetric problem on which Lemke's method is tried last.
 const LAST_RESORT_ROWS: usize = 400;
@@ -39,7 +43,8 @@ const CLEAR: f64 = 16.0 * f64::EPSILON;
 
 /// Solver that chooses a method by size and structure, and another one if that fails.
 ///
-/// Problems with friction go to [`Modes`](crate::Modes), then to [`Lemke`], which unsymmetric ones go to at once. Others are split into independent islands, solved one by one by the
+/// Problems with friction go to [`Modes`](crate::Modes), then to [`Lemke`], which unsymmetric ones go to at once unless they are
+/// contacts with friction written out. Others are split into independent islands, solved one by one by the
 /// [`DualActiveSet`]. Large islands whose contacts are so redundant that many pivots are in sight, or were made, go to
 /// [`ProximalNewton`], in the second case from an interior point. If an answer fails its check, the other methods are
 /// tried, at last Lemke's with twice as many digits.
@@ -97,6 +102,9 @@ impl Auto {
         if !problem.is_plain() {
             return self.friction.solve(problem, warm, solution);
         }
+        if !problem.is_symmetric() && problem.len() >= RECOGNISED_ROWS && self.recognise(problem, solution) {
+            return Ok(());
+        }
         let islands = if problem.len() < SPLIT_ROWS { 1 } else { self.islands.find(problem) };
         if islands > 1 {
             return self.solve_islands(problem, islands, warm, solution);
@@ -106,6 +114,19 @@ impl Auto {
             return self.look_at_islands(problem, warm, solution);
         }
         Ok(())
+    }
+
+    /// Solves a general problem by the contacts with friction that it is made of. False if it is none, or none is found.
+    #[cold]
+    fn recognise(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
+        let Some(recognised) = Recognised::of(problem) else { return false };
+        solution.reset(problem.len(), Method::Modes);
+        if !self.friction.solve_recognised(&recognised, &mut solution.force) {
+            return false;
+        }
+        solution.active.extend((0..problem.len()).filter(|&row| solution.force[row] != 0.0));
+        solution.residuals = self.checker.check(problem, &solution.force, &mut solution.acceleration);
+        solution.residuals.accepted(&self.settings, 0.0)
     }
 
     /// Solves a problem that was not split again by islands, if it has several: they may be small enough for a

@@ -2,6 +2,7 @@
 
 use super::enumeration::{Tried, enumerate};
 use super::modes::Modes;
+use super::recognition::Recognised;
 use crate::error::{SettingsError, SolveError};
 use crate::lemke::Lemke;
 use crate::problem::Problem;
@@ -32,6 +33,11 @@ impl FrictionMethods {
         self.settings.natural_residual = natural_residual;
         self.modes.set_natural_residual(natural_residual);
         self.lemke.set_natural_residual(natural_residual);
+    }
+
+    /// Solves a problem that was recognised, by modes.
+    pub(crate) fn solve_recognised(&mut self, recognised: &Recognised, force: &mut [f64]) -> bool {
+        recognised.solve(&mut self.modes, force)
     }
 
     /// Solves by modes; else by Lemke's method, which may prove that there is no solution; else by trying all modes.

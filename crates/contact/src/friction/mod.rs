@@ -4,7 +4,7 @@
 //! `scaled_rows` holds such a problem, its columns in a `body_order`. [`Modes`] solves it: `mode` tells how each force is
 //! found, `equations` are those of given modes, factorised by `skyline_lu`, `settle` corrects the modes of an earlier
 //! answer, and `descent` finds a start from none. `stewart_trinkle` writes the problem as a plain complementarity problem
-//! for [`Lemke`](crate::Lemke); `enumeration` tries all modes of few contacts, `methods` has the order of all these, and
+//! for [`Lemke`](crate::Lemke), and `recognition` finds contacts in such a one; `enumeration` tries all modes of few contacts, `methods` has the order of all these, and
 //! [`Jump`] is the way on where forces have no solution. *Invariant*: nothing here is used by problems whose rows are all plain.
 
 mod body_order;
@@ -15,6 +15,7 @@ mod jump;
 mod methods;
 mod mode;
 mod modes;
+mod recognition;
 mod scaled_rows;
 mod settle;
 mod skyline_lu;
@@ -23,4 +24,5 @@ mod stewart_trinkle;
 pub use jump::{Jump, JumpError};
 pub(crate) use methods::FrictionMethods;
 pub use modes::Modes;
+pub(crate) use recognition::Recognised;
 pub(crate) use stewart_trinkle::PlainForm;

@@ -2,7 +2,7 @@
 
 use super::judge::judge;
 use halfgap_contact::{
-    Auto, ContactFile, FileError, Lemke, Modes, Problem, RowKind, Solution, SolveError, Solver,
+    Auto, ContactFile, FileError, Lemke, Method, Modes, Problem, RowKind, Solution, SolveError, Solver,
 };
 use std::path::Path;
 
@@ -67,6 +67,12 @@ fn every_file_is_solved_as_it_stands_and_rebuilt() {
             None => {}
         }
         let plain_force = solution.force.clone();
+        // Large ones are recognised as what they are.
+        let outcome = Auto::default().solve(&plain, &mut solution);
+        assert_eq!(outcome.is_ok(), is_solved, "{name}: {outcome:?}");
+        if is_solved && plain.len() >= 40 && !rebuild(&plain).1.is_empty() {
+            assert_eq!(solution.method, Method::Modes, "{name}");
+        }
         let (problem, contacts, kept) = rebuild(&plain);
         let mut methods: Vec<Box<dyn Solver>> = vec![Box::new(Auto::default())];
         if !contacts.is_empty() {
