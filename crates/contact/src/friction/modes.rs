@@ -107,7 +107,7 @@ impl Modes {
 
     /// Goes on from the modes of the present forces. True if that ends with an accepted answer.
     fn settle(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
-        let enough = 0.5 * self.settings.natural_residual;
+        let enough = 0.1 * self.settings.natural_residual;
         let mut best = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             let found = self.settle.run(

@@ -81,7 +81,10 @@ impl Recognised {
         for contact in &self.contacts {
             let friction = force[contact.plus];
             (force[contact.plus], force[contact.minus]) = (friction.max(0.0), (-friction).max(0.0));
-            force[contact.slip] = slip[contact.plus].abs();
+            // Of the room in the cone and the slip speed one is zero, up to rounding.
+            let room = contact.coefficient * force[contact.normal] - friction.abs();
+            let speed = slip[contact.plus].abs();
+            force[contact.slip] = if room < speed { speed } else { 0.0 };
         }
         true
     }
