@@ -109,7 +109,7 @@ impl Impact {
         self.rough().and_then(|rough| rough.slips.get(row).copied()).unwrap_or(0.0)
     }
 
-    /// Energy [J] that friction took: of one contact after another along the paths of their impulses, of several at once
+    /// Energy \[J\] that friction took: of one contact after another along the paths of their impulses, of several at once
     /// by the mean of their slip speeds before and after.
     #[must_use]
     pub fn friction_loss(&self) -> f64 {
