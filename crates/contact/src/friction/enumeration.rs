@@ -34,11 +34,11 @@ pub(super) fn enumerate(problem: &Problem, settings: &Settings, solution: &mut S
     let mut rows = ScaledRows::default();
     rows.load(problem);
     let choices: Vec<&[Mode]> = rows.bound.iter().map(choices).collect();
-    let count = choices.iter().try_fold(1_u64, |product, modes| product.checked_mul(modes.len() as u64));
-    // Open contacts have no friction to choose: the true number is less.
-    let Some(count) = count.filter(|&count| count <= COMBINATIONS * (rows.friction.len() as u64 + 1)) else {
+    if combinations(&rows).is_none_or(|count| count > COMBINATIONS) {
         return Tried::TooMany;
-    };
+    }
+    // More than are tried: the friction of open contacts is no choice.
+    let count: u64 = choices.iter().map(|modes| modes.len() as u64).product();
     let (mut settle, mut equations, mut checker) =
         (Settle::default(), Equations::default(), Checker::default());
     let (mut modes, mut force, mut tried) = (Vec::new(), Vec::new(), 0);
@@ -75,11 +75,51 @@ pub(super) fn enumerate(problem: &Problem, settings: &Settings, solution: &mut S
     Tried::None(tried)
 }
 
+/// Number of combinations: a contact is open, or held with a mode for each of its friction rows.
+fn combinations(rows: &ScaledRows) -> Option<u64> {
+    (0..rows.len()).try_fold(1_u64, |product, row| {
+        let of_friction = 3_u64.checked_pow(rows.friction_of(row).len() as u32)?;
+        product.checked_mul(match rows.bound[row] {
+            Bound::Bilateral | Bound::Friction { .. } => 1,
+            Bound::Unilateral => 1 + of_friction,
+            Bound::Constants { .. } => 3_u64.checked_mul(of_friction)?,
+        })
+    })
+}
+
 fn choices(bound: &Bound) -> &'static [Mode] {
     match bound {
         Bound::Bilateral => &[Mode::Held],
         Bound::Unilateral => &[Mode::Held, Mode::Open],
         Bound::Constants { .. } => &[Mode::Held, Mode::Least, Mode::Most],
         Bound::Friction { .. } => &[Mode::Held, Mode::Least, Mode::Most, Mode::Open],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{InverseInertia, Row};
+
+    /// Discs that fall and slide on a floor, at velocity level.
+    fn discs(count: usize) -> Problem {
+        let mut problem = Problem::new();
+        for at in 0..count {
+            let inertia = InverseInertia { inverse_mass: 1.0, inverse_moment: 2.0 };
+            let disc = problem.add_body(inertia).expect("a body");
+            let slip = [0.1, 5.0][at % 2];
+            let rows = [Row::new(disc, [0.0, 1.0, 0.0], -1.0), Row::new(disc, [-1.0, 0.0, -1.0], slip)];
+            problem.add_contact(&rows[0], &rows[1], 0.5).expect("rows");
+        }
+        problem
+    }
+
+    #[test]
+    fn six_contacts_are_tried_and_seven_are_not() {
+        let (settings, mut solution) = (Settings::default(), Solution::new());
+        assert!(matches!(enumerate(&discs(6), &settings, &mut solution), Tried::Found));
+        // One sticks, the next slips.
+        assert!((solution.force[1] + 0.1 / 3.0).abs() < 1e-12 && (solution.force[3] + 0.5).abs() < 1e-12);
+        assert!(matches!(enumerate(&discs(7), &settings, &mut solution), Tried::TooMany));
     }
 }
