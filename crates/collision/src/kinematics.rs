@@ -83,15 +83,19 @@ impl GapKinematics {
     #[must_use]
     #[inline]
     pub fn acceleration(&self, primary: &BodyAcceleration, normal: &BodyAcceleration) -> f64 {
-        let j = &self.jacobian;
-        j[0] * primary.linear.x
-            + j[1] * primary.linear.y
-            + j[2] * primary.angular
-            + j[3] * normal.linear.x
-            + j[4] * normal.linear.y
-            + j[5] * normal.angular
-            + self.gamma
+        rate_of_change(&self.jacobian, primary, normal) + self.gamma
     }
+}
+
+/// J v' of a row [m/s^2] for accelerations v' of its bodies.
+#[inline]
+pub(crate) fn rate_of_change(j: &[f64; 6], primary: &BodyAcceleration, normal: &BodyAcceleration) -> f64 {
+    j[0] * primary.linear.x
+        + j[1] * primary.linear.y
+        + j[2] * primary.angular
+        + j[3] * normal.linear.x
+        + j[4] * normal.linear.y
+        + j[5] * normal.angular
 }
 
 impl Arms {

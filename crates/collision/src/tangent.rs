@@ -15,7 +15,7 @@
 //!
 //! The formulas were derived for this project; they are checked against finite differences.
 
-use crate::kinematics::{Arms, BodyAcceleration, GapKinematics};
+use crate::kinematics::{Arms, BodyAcceleration, GapKinematics, rate_of_change};
 use crate::motion::Moving;
 use glam::DVec2;
 use halfgap_geometry::{GapKind, GapSample};
@@ -106,14 +106,7 @@ impl TangentRow {
     #[must_use]
     #[inline]
     pub fn acceleration(&self, primary: &BodyAcceleration, normal: &BodyAcceleration) -> f64 {
-        let j = &self.jacobian;
-        j[0] * primary.linear.x
-            + j[1] * primary.linear.y
-            + j[2] * primary.angular
-            + j[3] * normal.linear.x
-            + j[4] * normal.linear.y
-            + j[5] * normal.angular
-            + self.gamma
+        rate_of_change(&self.jacobian, primary, normal) + self.gamma
     }
 }
 

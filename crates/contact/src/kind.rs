@@ -1,11 +1,11 @@
 //! Kinds of rows: how the force of a row and its acceleration belong together, and in which direction the force acts.
 //!
-//! *Invariant*: methods see plain rows only. Rows that are not plain are few and are listed apart, so that a problem
+//! *Invariant*: the symmetric methods see plain rows only. Rows that are not plain are few and are listed apart, so that a problem
 //! without them costs nothing for them.
 
 use crate::error::{ProblemError, SolveError};
-use crate::matrix::SparseMatrix;
-use crate::problem::Problem;
+use crate::matrix::{Matrix, SparseMatrix};
+use crate::problem::{Problem, Row};
 use crate::solver::Method;
 use crate::words;
 
@@ -205,6 +205,89 @@ impl FurtherRows {
 }
 
 impl Problem {
+    /// Adds the two rows of a contact with friction: that of its gap, which is made unilateral, and that of its slip.
+    /// Returns the numbers of both.
+    ///
+    /// The slip of a contact at a point p, with the normal n and t = n turned by +90 degrees, is measured by the coefficients
+    /// (t, (p - x) × t) of the primary and their opposites of the normal side, with p the same point for both.
+    ///
+    /// # Errors
+    ///
+    /// [`ProblemError`] names the row, or the coefficient; the problem is unchanged then.
+    ///
+    /// # Examples
+    ///
+    /// A block of 1 kg on the floor, pushed sideways at its centre with 2 N: mu = 0.3 would hold 2.943 N.
+    ///
+    /// ```
+    /// use halfgap_contact::{Auto, InverseInertia, Problem, Row, Solution, Solver};
+    ///
+    /// let mut problem = Problem::new();
+    /// let block = problem.add_body(InverseInertia { inverse_mass: 1.0, inverse_moment: 6.0 })?;
+    /// for x in [-0.5, 0.5] {
+    ///     // The corner lies at (x, -0.5) from the centre; the tangent points to -x.
+    ///     let (gap, slip) = (Row::new(block, [0.0, 1.0, x], -9.81), Row::new(block, [-1.0, 0.0, -0.5], -2.0));
+    ///     problem.add_contact(&gap, &slip, 0.3)?;
+    /// }
+    /// let mut solution = Solution::new();
+    /// Auto::default().solve(&problem, &mut solution)?;
+    /// assert!((solution.force[1] + solution.force[3] - 2.0).abs() < 1e-12 && solution.acceleration[1].abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn add_contact(
+        &mut self,
+        gap: &Row,
+        slip: &Row,
+        coefficient: f64,
+    ) -> Result<[usize; 2], ProblemError> {
+        let normal = self.add_row(&Row { kind: RowKind::Unilateral, ..*gap })?;
+        match self.add_row(&slip.friction(normal, coefficient)) {
+            Ok(tangential) => Ok([normal, tangential]),
+            Err(error) => {
+                self.pop_row();
+                Err(error)
+            }
+        }
+    }
+
+    /// Takes the last row off.
+    fn pop_row(&mut self) {
+        if let Matrix::Bodies(bodies) = &mut self.matrix {
+            bodies.rows.pop_row();
+        }
+        self.offset.pop();
+        self.bilateral.pop();
+        self.further.truncate(self.offset.len());
+        self.keys.truncate(self.offset.len());
+    }
+
+    /// Changes the kind of a row, such as one of a matrix, which has no other way to friction.
+    ///
+    /// # Errors
+    ///
+    /// [`ProblemError`] names the bounds that are none, or a normal row that is not a unilateral one; the problem is
+    /// unchanged then.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such row.
+    pub fn set_kind(&mut self, row: usize, kind: RowKind) -> Result<(), ProblemError> {
+        assert!(row < self.len(), "row {row} of {}", self.len());
+        kind.check(row, self)?;
+        let bounded = |(other, kind): &(usize, RowKind)| match kind {
+            RowKind::Friction { normal, .. } => *normal == row && *other != row,
+            _ => false,
+        };
+        if let Some((other, _)) = self.further.kinds().find(bounded)
+            && !kind.pushes()
+        {
+            return Err(ProblemError::NotAContact { row: other, normal: row });
+        }
+        self.bilateral[row] = kind == RowKind::Bilateral;
+        self.further.set_kind(row, kind);
+        Ok(())
+    }
+
     /// Refuses, in the name of a method, a problem that has other rows than unilateral and bilateral ones whose forces act
     /// in the directions that are measured.
     ///
