@@ -304,7 +304,7 @@ impl Inspector {
                 .iter()
                 .map(|connector| (connector.key(), zone(connector, world)))
                 .collect(),
-            tolerance: scene.run.tolerance,
+            tolerance: scene.run.tolerance_or_default(),
             sinks: (!scene.run.contacts)
                 .then(|| world.tolerances().velocity_tol * scene.run.time_step.unwrap_or(IMPULSE_STEP)),
             slow_is_given: scene.run.velocity_tol.is_some(),
@@ -451,7 +451,7 @@ fn no_energy(scene: &Scene, world: &World) -> f64 {
     let coordinate =
         world.bodies().map(|body| world.state(body).position.abs().max_element() + world.shape(body).reach());
     let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
-    let lifted = CONNECTOR_TOLERANCES * scene.run.tolerance * reach.fold(0.0, f64::max);
+    let lifted = CONNECTOR_TOLERANCES * scene.run.tolerance_or_default() * reach.fold(0.0, f64::max);
     let weight: f64 = scene.forces.iter().map(gravity).sum();
     masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted) + forces(world) * lifted
 }

@@ -54,6 +54,8 @@ pub mod ode;
 mod queue;
 #[cfg(feature = "rigid")]
 pub mod rigid;
+#[cfg(feature = "rigid")]
+pub mod stepping;
 mod system;
 mod time;
 

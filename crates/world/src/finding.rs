@@ -397,7 +397,7 @@ impl World {
     /// False where steps of a given length may err by any amount, or states are not projected.
     pub(crate) fn keeps_to_tolerance(&self) -> bool {
         let settings = self.rigid_settings();
-        settings.projection && settings.method.is_adaptive()
+        !self.strategy.is_stepping() && settings.projection && settings.method.is_adaptive()
     }
 }
 

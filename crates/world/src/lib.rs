@@ -87,7 +87,8 @@ pub use halfgap_collision::{
 };
 
 pub use finding::Finding;
-pub use halfgap_contact::{ImpactLaw, ImpactOrder};
+pub use halfgap_advance::rigid::{Surface, UniformMotion};
+pub use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 pub use halfgap_geometry as geometry;
 pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
@@ -103,6 +104,6 @@ pub use run::{Progress, Reached, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{Outcome, RunError};
 #[cfg(feature = "save")]
 pub use saving::{LoadError, SaveError};
-pub use settings::{DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings};
+pub use settings::{AdvanceBy, DEFAULT_TOLERANCE, Integrator, StepLength, Stabilization, ToleranceOverrides, WorldSettings};
 pub use world::{Energy, Inertia, Statistics, World};
 pub use world_error::{ConnectorName, WorldError};

@@ -1,9 +1,11 @@
 //! Settings of the advance, from the settings of a world and its scales.
 
-use crate::settings::{Integrator, Stabilization, ToleranceOverrides, WorldSettings};
+use crate::settings::{Integrator, Stabilization, StepLength, ToleranceOverrides, WorldSettings};
 use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, Scales, StepControl};
+use halfgap_advance::stepping::SteppingSettings;
 use halfgap_collision::{SearchSettings, Tolerances};
+use halfgap_contact::Restitution;
 
 /// Factor on the sinking of a centre in one step: the corner of a body that turns may sink faster than its centre.
 const SINKING: f64 = 4.0;
@@ -31,6 +33,22 @@ pub(crate) fn rigid_settings(
         joint_small_impacts: settings.joint_small_impacts,
         ..derived
     }
+}
+
+/// Returns the settings of an advance by steps.
+pub(crate) fn stepping_settings(
+    rigid: RigidSettings,
+    (step, residual): (StepLength, f64),
+    restitution: Restitution,
+    scales: &Scales,
+) -> SteppingSettings {
+    let step = match step {
+        StepLength::Fixed(step) => step,
+        StepLength::ByTolerance => 1.0 / 240.0,
+    };
+    let length = scales.smallest_radius.unwrap_or(scales.coordinate);
+    let slack = (residual * length).max(rigid.tolerances.accuracy);
+    SteppingSettings { step, residual, slack, restitution, rigid }
 }
 
 /// Returns the thresholds of touching: those given in the settings, the others derived from the tolerance.

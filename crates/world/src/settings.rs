@@ -1,7 +1,7 @@
 //! Settings of a world: accuracy, thresholds of touching, impact law, integrator.
 
 use halfgap_advance::rigid::RemedySet;
-use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 
 /// Default of [`WorldSettings::tolerance`] [-].
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;
@@ -19,6 +19,30 @@ pub struct ToleranceOverrides {
     pub velocity_tol: Option<f64>,
 }
 
+/// How a world advances.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AdvanceBy {
+    /// Each event at its own time.
+    #[default]
+    Events,
+    /// Steps, in which contacts are problems of velocities: with friction, and for piles.
+    Steps {
+        /// Length of the steps.
+        step: StepLength,
+        /// Change of an impulse, as a fraction of the largest [-], up to which the impulses of a step are found.
+        residual: f64,
+    },
+}
+
+/// Length of steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepLength {
+    /// Always the same [s].
+    Fixed(f64),
+    /// Chosen so that errors keep to the tolerance.
+    ByTolerance,
+}
+
 /// Settings of a world, fixed when it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldSettings {
@@ -29,6 +53,10 @@ pub struct WorldSettings {
     pub duration: Option<f64>,
     /// Relative accuracy asked for [-], above 0 and at most 1.
     pub tolerance: f64,
+    /// How the world advances.
+    pub strategy: AdvanceBy,
+    /// What elasticity means where there is friction.
+    pub restitution: Restitution,
     /// Typical speed [m/s] of the world, for worlds whose start does not show it: thresholds and errors of
     /// velocity are relative to it, or to the speed that the start shows if that is higher.
     pub usual_speed: Option<f64>,
@@ -143,6 +171,8 @@ impl Default for WorldSettings {
             start_time: 0.0,
             duration: None,
             tolerance: DEFAULT_TOLERANCE,
+            strategy: AdvanceBy::default(),
+            restitution: Restitution::default(),
             usual_speed: None,
             overrides: ToleranceOverrides::default(),
             start_overlap: None,

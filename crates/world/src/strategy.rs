@@ -10,6 +10,9 @@ use halfgap_advance::rigid::{
 };
 #[cfg(feature = "save")]
 use halfgap_advance::rigid::{PartsError, SavedSystem};
+#[cfg(feature = "save")]
+use halfgap_advance::stepping::SavedStepping;
+use halfgap_advance::stepping::{SteppingSettings, SteppingSystem};
 use halfgap_advance::{EventDriven, Time};
 #[cfg(feature = "save")]
 use halfgap_collision::Connector;
@@ -22,6 +25,8 @@ use std::sync::Arc;
 pub(crate) enum Strategy {
     /// Each event at its own time.
     Events(RigidSystem),
+    /// Steps.
+    Steps(Box<SteppingSystem>),
 }
 
 impl Strategy {
@@ -34,11 +39,17 @@ impl Strategy {
         RigidSystem::new(parts, settings, start).map(Self::Events)
     }
 
+    /// Makes the system of parts that fit together, to be advanced by steps.
+    pub(crate) fn steps(parts: RigidParts, settings: SteppingSettings, start: Time) -> Result<Self, AdvanceError> {
+        SteppingSystem::new(parts, settings, start).map(|system| Self::Steps(Box::new(system)))
+    }
+
     /// The connectors.
     #[cfg(feature = "save")]
     pub(crate) fn connectors(&self) -> &[Connector] {
         match self {
             Self::Events(system) => system.connectors(),
+            Self::Steps(system) => system.connectors(),
         }
     }
 
@@ -47,6 +58,7 @@ impl Strategy {
     pub(crate) fn now(&self) -> Time {
         match self {
             Self::Events(system) => system.now(),
+            Self::Steps(system) => system.now(),
         }
     }
 
@@ -55,6 +67,7 @@ impl Strategy {
     pub(crate) fn body(&self, body: BodyId) -> &Body {
         match self {
             Self::Events(system) => system.trajectory(body).body(),
+            Self::Steps(system) => system.body(body),
         }
     }
 
@@ -63,6 +76,7 @@ impl Strategy {
     pub(crate) fn state_at(&self, body: BodyId, time: Time) -> BodyState {
         match self {
             Self::Events(system) => system.trajectory(body).state_at(time),
+            Self::Steps(system) => system.state_at(body, time),
         }
     }
 
@@ -70,6 +84,7 @@ impl Strategy {
     pub(crate) fn rail_hint(&self, connector: ConnectorId, time: Time) -> Option<RailHint> {
         match self {
             Self::Events(system) => system.rail_hint(connector, time),
+            Self::Steps(system) => system.rail_hint(connector),
         }
     }
 
@@ -77,6 +92,7 @@ impl Strategy {
     pub(crate) fn row_forces(&self, time: Time) -> Vec<RowForce> {
         match self {
             Self::Events(system) => system.row_forces(time),
+            Self::Steps(system) => system.row_forces(),
         }
     }
 
@@ -84,6 +100,7 @@ impl Strategy {
     pub(crate) fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
         match self {
             Self::Events(system) => system.write_ledger(time, ledger),
+            Self::Steps(system) => system.write_ledger(time, ledger),
         }
     }
 
@@ -92,6 +109,7 @@ impl Strategy {
     pub(crate) fn counts(&self) -> Counts {
         match self {
             Self::Events(system) => system.counts(),
+            Self::Steps(system) => system.counts(),
         }
     }
 
@@ -99,6 +117,7 @@ impl Strategy {
     pub(crate) fn remedies(&self) -> RemedyCounts {
         match self {
             Self::Events(system) => system.remedies(),
+            Self::Steps(_) => RemedyCounts::default(),
         }
     }
 
@@ -107,6 +126,7 @@ impl Strategy {
     pub(crate) fn settings(&self) -> &RigidSettings {
         match self {
             Self::Events(system) => system.settings(),
+            Self::Steps(system) => &system.settings().rigid,
         }
     }
 
@@ -114,6 +134,7 @@ impl Strategy {
     pub(crate) fn excluded(&self) -> &[(BodyId, BodyId)] {
         match self {
             Self::Events(system) => system.excluded(),
+            Self::Steps(system) => system.excluded(),
         }
     }
 
@@ -121,6 +142,15 @@ impl Strategy {
     pub(crate) fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
         match self {
             Self::Events(system) => system.room_to_sink(bodies),
+            Self::Steps(system) => system.room_to_sink(bodies),
+        }
+    }
+
+    /// True if the world advances by steps.
+    pub(crate) fn is_stepping(&self) -> bool {
+        match self {
+            Self::Events(_) => false,
+            Self::Steps(_) => true,
         }
     }
 
@@ -129,6 +159,7 @@ impl Strategy {
     pub(crate) fn set_duration(&mut self, duration: f64) {
         match self {
             Self::Events(system) => system.set_duration(duration),
+            Self::Steps(_) => {}
         }
     }
 }
@@ -139,6 +170,7 @@ impl Strategy {
     pub(crate) fn force_laws(&self) -> &[Arc<dyn ForceLaw>] {
         match self {
             Self::Events(system) => system.force_laws(),
+            Self::Steps(system) => system.force_laws(),
         }
     }
 
@@ -146,6 +178,7 @@ impl Strategy {
     pub(crate) fn is_acting(&self, law: usize) -> bool {
         match self {
             Self::Events(system) => system.is_acting(law),
+            Self::Steps(system) => system.is_acting(law),
         }
     }
 
@@ -153,6 +186,7 @@ impl Strategy {
     pub(crate) fn has_potential(&self, law: usize) -> bool {
         match self {
             Self::Events(system) => system.has_potential(law),
+            Self::Steps(system) => system.has_potential(law),
         }
     }
 
@@ -164,6 +198,7 @@ impl Strategy {
     ) -> Result<Option<Handled>, AdvanceError> {
         match self {
             Self::Events(system) => system.add_force_law(time, law),
+            Self::Steps(system) => system.add_force_law(time, law),
         }
     }
 
@@ -175,6 +210,7 @@ impl Strategy {
     ) -> Result<Option<Handled>, AdvanceError> {
         match self {
             Self::Events(system) => system.remove_force_law(time, law),
+            Self::Steps(system) => system.remove_force_law(time, law),
         }
     }
 
@@ -186,6 +222,7 @@ impl Strategy {
     ) -> Result<Option<Handled>, AdvanceError> {
         match self {
             Self::Events(system) => system.intervene(time, changes),
+            Self::Steps(system) => system.intervene(time, changes),
         }
     }
 }
@@ -197,6 +234,7 @@ impl Strategy {
     pub(crate) fn last_impact(&self) -> &ImpactReport {
         match self {
             Self::Events(system) => system.last_impact(),
+            Self::Steps(system) => system.last_impact(),
         }
     }
 
@@ -204,6 +242,7 @@ impl Strategy {
     pub(crate) fn untold_impact(&self) -> Option<&ImpactReport> {
         match self {
             Self::Events(system) => system.untold_impact(),
+            Self::Steps(_) => None,
         }
     }
 
@@ -212,6 +251,7 @@ impl Strategy {
     pub(crate) fn contact_changes(&self) -> &ContactChanges {
         match self {
             Self::Events(system) => system.contact_changes(),
+            Self::Steps(system) => system.contact_changes(),
         }
     }
 
@@ -220,6 +260,7 @@ impl Strategy {
     pub(crate) fn failure(&self) -> Option<&AdvanceError> {
         match self {
             Self::Events(system) => system.failure(),
+            Self::Steps(system) => system.failure(),
         }
     }
 }
@@ -233,6 +274,7 @@ impl EventDriven for Strategy {
     fn next_event(&self) -> Option<Time> {
         match self {
             Self::Events(system) => system.next_event(),
+            Self::Steps(system) => system.next_event(),
         }
     }
 
@@ -240,6 +282,7 @@ impl EventDriven for Strategy {
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
         match self {
             Self::Events(system) => system.handle_next(),
+            Self::Steps(system) => system.handle_next(),
         }
     }
 
@@ -247,6 +290,7 @@ impl EventDriven for Strategy {
     fn arrive(&mut self) {
         match self {
             Self::Events(system) => system.arrive(),
+            Self::Steps(system) => system.arrive(),
         }
     }
 }
@@ -256,6 +300,7 @@ impl EventDriven for Strategy {
 #[derive(serde::Deserialize)]
 pub(crate) enum SavedStrategy {
     Events(SavedSystem),
+    Steps(Box<SavedStepping>),
 }
 
 #[cfg(feature = "save")]
@@ -264,6 +309,7 @@ impl SavedStrategy {
     pub(crate) fn with_force_laws(self, force_laws: Vec<Arc<dyn ForceLaw>>) -> Result<Strategy, PartsError> {
         match self {
             Self::Events(saved) => saved.with_force_laws(force_laws).map(Strategy::Events),
+            Self::Steps(saved) => saved.with_force_laws(force_laws).map(|system| Strategy::Steps(Box::new(system))),
         }
     }
 }

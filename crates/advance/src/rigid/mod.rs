@@ -49,6 +49,7 @@ mod settings;
 mod shares;
 mod sinking;
 mod stepping;
+mod surface;
 mod system;
 #[cfg(test)]
 mod test_scene;
@@ -64,12 +65,17 @@ pub use books::ledger::Ledger;
 pub use books::report::{ContactChanges, Handled, ImpactReport, RowForce, RowReport};
 pub use error::{AdvanceError, Between};
 pub use event::intervention::VelocityChange;
+pub(crate) use event::intervention::check_finite;
+pub(crate) use parts::check_bodies_of_force_law;
 pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
-pub use parts::{BodyPart, PartsError, RigidParts};
+pub use parts::{BodyPart, PartsError, RigidParts, UniformMotion};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
+pub(crate) use bodies::force_laws::ForceLaws;
+pub(crate) use forest::Forest;
+pub use surface::{PairSurface, Surface};
 pub use settings::{ExtraAcceleration, RegionSteps, RigidSettings, StepControl};
 pub use system::RigidSystem;
 #[cfg(feature = "save")]

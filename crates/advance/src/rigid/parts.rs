@@ -3,7 +3,9 @@
 use crate::rigid::bodies::force_law::ForceLaw;
 use crate::rigid::bodies::trajectory::FreeMotion;
 use crate::rigid::settings::RigidSettings;
+use crate::rigid::surface::Surface;
 use crate::time::Time;
+use glam::DVec2;
 use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
 use std::sync::Arc;
 
@@ -30,6 +32,28 @@ pub struct BodyPart {
     /// Position [m] of the centre of mass, angle [rad], velocity [m/s] and angular velocity [rad/s] at the start, in the
     /// world frame; both velocities are ignored for a fixed body.
     pub state: BodyState,
+    /// What the surface does to bodies that touch it; only steps know of it.
+    pub surface: Surface,
+    /// Motion of a fixed body that is moved; only steps know of it. `None` for one that stays, ignored for a movable body.
+    pub motion: Option<UniformMotion>,
+}
+
+impl BodyPart {
+    /// Makes a body with a smooth surface, which stays where it is if it is fixed.
+    #[must_use]
+    pub fn new(body: Body, free_motion: FreeMotion, state: BodyState) -> Self {
+        Self { body, free_motion, state, surface: Surface::default(), motion: None }
+    }
+}
+
+/// Uniform motion of a fixed body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct UniformMotion {
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: DVec2,
+    /// Angular velocity [rad/s].
+    pub angular_velocity: f64,
 }
 
 /// Reason why no system can be made of some parts or settings.
@@ -188,13 +212,18 @@ fn check_zone(&Tolerances { target_gap, accuracy, .. }: &Tolerances) -> Result<(
     keep_to(&[(POSITIVE.0, POSITIVE.1, &sizes)]).map_err(bad)
 }
 
-fn check_body(BodyPart { body, free_motion, state }: &BodyPart) -> Result<(), Broken> {
+fn check_body(BodyPart { body, free_motion, state, surface, motion }: &BodyPart) -> Result<(), Broken> {
     let sizes = [
         ("inverse mass", body.inverse_mass),
         ("inverse moment", body.inverse_moment),
         ("linear rate", free_motion.linear_rate),
         ("angular rate", free_motion.angular_rate),
+        ("friction", surface.friction),
+        ("static friction", surface.static_friction),
+        ("rolling resistance", surface.rolling_resistance),
     ];
+    let motion = motion.unwrap_or_default();
+    let shares = [("elasticity", body.elasticity), ("tangential elasticity", surface.tangential_elasticity)];
     let numbers = [
         ("x", state.position.x),
         ("y", state.position.y),
@@ -204,11 +233,15 @@ fn check_body(BodyPart { body, free_motion, state }: &BodyPart) -> Result<(), Br
         ("angular velocity", state.angular_velocity),
         ("acceleration.x", free_motion.acceleration.x),
         ("acceleration.y", free_motion.acceleration.y),
+        ("surface velocity", surface.velocity),
+        ("motion.velocity.x", motion.velocity.x),
+        ("motion.velocity.y", motion.velocity.y),
+        ("motion.angular_velocity", motion.angular_velocity),
     ];
     keep_to(&[
         (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
         (FINITE.0, FINITE.1, &numbers),
-        ("between 0 and 1", |value| (0.0..=1.0).contains(&value), &[("elasticity", body.elasticity)]),
+        ("between 0 and 1", |value| (0.0..=1.0).contains(&value), &shares),
     ])?;
     if (body.inverse_mass > 0.0) != (body.inverse_moment > 0.0) {
         return Err(("inverse moment", "positive exactly if the inverse mass is", body.inverse_moment));
@@ -244,7 +277,7 @@ mod tests {
     fn disc() -> BodyPart {
         let shape = Shape::disc(0.5).expect("a fine radius");
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 1.0 };
-        BodyPart { body, free_motion: FreeMotion::default(), state: BodyState::default() }
+        BodyPart::new(body, FreeMotion::default(), BodyState::default())
     }
 
     /// The error message for a system of one disc after a change of its parts or settings.

@@ -108,11 +108,11 @@ fn resting(placed: impl Iterator<Item = (Shape, BodyState)>) -> Rooms {
         elasticity: 0.0,
     };
     let below = BodyState { position: DVec2::new(0.0, -0.5), ..BodyState::default() };
-    let mut bodies = vec![BodyPart { body: floor, free_motion: FreeMotion::default(), state: below }];
+    let mut bodies = vec![BodyPart::new(floor, FreeMotion::default(), below)];
     bodies.extend(placed.map(|(shape, state)| {
         let body = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
         let free_motion = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
-        BodyPart { body, free_motion, state }
+        BodyPart::new(body, free_motion, state)
     }));
     rooms_of(RigidParts { bodies, ..RigidParts::default() }, DISCS, Time::ZERO)
 }

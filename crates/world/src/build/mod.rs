@@ -14,6 +14,7 @@ use crate::scene::{BodyData, EdgeData, FieldPath, ForceData, PathData, Scene, Sc
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, BodyState};
+use halfgap_advance::rigid::{Surface, UniformMotion};
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
 
 impl World {
@@ -110,6 +111,17 @@ fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {
         inertia,
         state,
         elasticity: body.elasticity,
+        surface: Surface {
+            friction: body.friction,
+            static_friction: body.static_friction.unwrap_or(body.friction),
+            velocity: body.surface_velocity,
+            rolling_resistance: body.rolling_resistance,
+            tangential_elasticity: body.tangential_elasticity,
+        },
+        motion: body.motion.as_ref().map(|motion| UniformMotion {
+            velocity: motion.velocity.unwrap_or_default().into(),
+            angular_velocity: motion.angular_velocity.unwrap_or_default(),
+        }),
     };
     Ok(match body.origin {
         Some(origin) => spec.with_origin(origin.into()),

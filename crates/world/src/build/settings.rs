@@ -1,16 +1,37 @@
 //! The settings of a world from the table `[run]` of a scene.
 
-use crate::scene::RunData;
-use crate::settings::{ToleranceOverrides, WorldSettings};
+use crate::scene::{RunData, StrategyData};
+use crate::settings::{AdvanceBy, StepLength, ToleranceOverrides, WorldSettings};
 use halfgap_advance::rigid::RemedySet;
 use halfgap_contact::ImpactOrder;
+
+/// Length of a step [s] where neither it nor a tolerance is given.
+const DEFAULT_STEP: f64 = 1.0 / 240.0;
+/// Residual of steps where no tolerance is given.
+const DEFAULT_RESIDUAL: f64 = 1e-6;
+
+fn strategy(run: &RunData) -> AdvanceBy {
+    match run.strategy {
+        StrategyData::Events => AdvanceBy::Events,
+        StrategyData::Steps => AdvanceBy::Steps {
+            step: match (run.time_step, run.tolerance) {
+                (Some(step), _) => StepLength::Fixed(step),
+                (None, Some(_)) => StepLength::ByTolerance,
+                (None, None) => StepLength::Fixed(DEFAULT_STEP),
+            },
+            residual: run.tolerance.unwrap_or(DEFAULT_RESIDUAL),
+        },
+    }
+}
 
 /// Returns the settings that a scene asks for.
 pub(crate) fn of_run(run: &RunData) -> WorldSettings {
     WorldSettings {
         start_time: run.start_time,
         duration: Some(run.duration),
-        tolerance: run.tolerance,
+        tolerance: run.tolerance_or_default(),
+        strategy: strategy(run),
+        restitution: run.restitution,
         usual_speed: None,
         overrides: ToleranceOverrides {
             target_gap: run.target_gap,

@@ -8,9 +8,9 @@ mod warnings;
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceId, ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
 use crate::invariant_monitor::{EnergyScales, InvariantMonitor};
-use crate::rigid_settings::{rigid_settings, tolerances};
+use crate::rigid_settings::{rigid_settings, stepping_settings, tolerances};
 use crate::run_error::RunError;
-use crate::settings::WorldSettings;
+use crate::settings::{AdvanceBy, WorldSettings};
 use crate::start::{Corrected, StartRules, correct_start};
 use crate::strategy::Strategy;
 use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
@@ -20,7 +20,7 @@ use checks::world_bounds;
 use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{BodyPart, FreeMotion, RigidParts, Scales};
+use halfgap_advance::rigid::{BodyPart, FreeMotion, RigidParts, Scales, Surface, UniformMotion};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
@@ -60,6 +60,10 @@ pub struct BodySpec {
     pub state: BodyState,
     /// Coefficient of restitution, 0 to 1; a pair of bodies uses the lesser.
     pub elasticity: f64,
+    /// Friction and what else the surface does; only an advance by [steps](AdvanceBy::Steps) knows of it.
+    pub surface: Surface,
+    /// Motion of a fixed body that is moved; only an advance by [steps](AdvanceBy::Steps) knows of it.
+    pub motion: Option<UniformMotion>,
 }
 
 impl BodySpec {
@@ -67,7 +71,16 @@ impl BodySpec {
     #[must_use]
     pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
         let state = BodyState { position, ..BodyState::default() };
-        Self { name: name.to_owned(), shape, center_of_mass: None, inertia: None, state, elasticity: 1.0 }
+        Self {
+            name: name.to_owned(),
+            shape,
+            center_of_mass: None,
+            inertia: None,
+            state,
+            elasticity: 1.0,
+            surface: Surface::default(),
+            motion: None,
+        }
     }
 
     /// Makes a movable body of elasticity 1 and uniform density, with the given mass [kg].
@@ -81,6 +94,8 @@ impl BodySpec {
             inertia: Some(inertia),
             state,
             elasticity: 1.0,
+            surface: Surface::default(),
+            motion: None,
         }
     }
 
@@ -269,7 +284,11 @@ impl WorldBuilder {
             force_laws: self.forces,
             excluded: self.excluded,
         };
-        let strategy = Strategy::events(parts, settings, now).map_err(|error| WorldError::Start {
+        let strategy = match self.settings.strategy {
+            AdvanceBy::Events => Strategy::events(parts, settings, now),
+            AdvanceBy::Steps { step, residual } => Strategy::steps(parts, stepping_settings(settings, (step, residual), self.settings.restitution, &scales), now),
+        }
+        .map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
         Ok(World::new(WorldParts { strategy, bodies: named, connectors, now, warnings, start, monitor }))
@@ -529,7 +548,7 @@ fn centered(body: &BodySpec) -> Shape {
 /// Splits the specification of a body into the data that the world keeps and the part for the system.
 fn into_part((spec, law): (BodySpec, FreeMotion)) -> (Named, BodyPart) {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
-    let named = Named { name: spec.name, center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
+    let named = Named { name: spec.name.clone(), center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
     let inverse =
         |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
     let body = Body {
@@ -544,5 +563,6 @@ fn into_part((spec, law): (BodySpec, FreeMotion)) -> (Named, BodyPart) {
     } else {
         BodyState { velocity: DVec2::ZERO, angular_velocity: 0.0, ..spec.state }
     };
-    (named, BodyPart { body, free_motion: law, state })
+    let BodySpec { surface, motion, .. } = spec;
+    (named, BodyPart { surface, motion, ..BodyPart::new(body, law, state) })
 }

@@ -24,8 +24,9 @@ pub(super) fn tightened(scene: &Scene, world: &World) -> Result<Scene, SceneErro
     let shrunk = |value: Option<f64>| value.map(|value| value / factor);
     let gap = world.tolerances().target_gap;
     let other_gap = other_gap(gap, factor, least_gap(scene)?);
+    let tolerance = run.tolerance_or_default();
     let run = RunData {
-        tolerance: (run.tolerance / factor).max(TIGHTEST.min(run.tolerance)),
+        tolerance: Some((tolerance / factor).max(TIGHTEST.min(tolerance))),
         target_gap: Some(other_gap),
         accuracy: run.accuracy.map(|accuracy| accuracy * other_gap / gap),
         velocity_tol: shrunk(run.velocity_tol),
@@ -43,7 +44,7 @@ fn other_gap(gap: f64, factor: f64, least: f64) -> f64 {
 /// Returns the smallest target gap [m] that the coordinates allow.
 fn least_gap(scene: &Scene) -> Result<f64, SceneError> {
     let run = RunData {
-        tolerance: TIGHTEST,
+        tolerance: Some(TIGHTEST),
         target_gap: None,
         accuracy: None,
         velocity_tol: None,
@@ -72,7 +73,7 @@ mod tests {
     fn everything_that_is_given_shrinks() {
         let run =
             run("tolerance = 1e-6, target_gap = 1e-2, accuracy = 1e-3, velocity_tol = 0.5, time_step = 0.1");
-        assert_eq!((run.tolerance, run.target_gap), (1e-6 / 100.0, Some(1e-2 / 100.0)));
+        assert_eq!((run.tolerance, run.target_gap), (Some(1e-6 / 100.0), Some(1e-2 / 100.0)));
         assert!((run.accuracy.expect("it was given") - 1e-5).abs() < 1e-18);
         assert_eq!(run.velocity_tol, Some(0.5 / 100.0));
         assert_eq!(run.time_step, Some(0.1), "it bounds an adaptive step");

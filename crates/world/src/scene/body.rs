@@ -42,12 +42,39 @@ pub struct BodyData {
     /// Coefficient of restitution, 0 to 1; a pair of bodies uses the lesser.
     #[serde(default = "full_elasticity")]
     pub elasticity: f64,
-    /// Coulomb coefficient of friction [-]; a pair of bodies uses the geometric mean. Not simulated yet.
+    /// Kinetic Coulomb coefficient of friction [-]; a pair of bodies uses the geometric mean.
     #[serde(default)]
     pub friction: f64,
+    /// Coefficient up to which contacts stick [-]; as `friction` if not given. A pair uses the geometric mean.
+    pub static_friction: Option<f64>,
+    /// Speed at which the surface runs along the outline [m/s], counter-clockwise positive.
+    #[serde(default)]
+    pub surface_velocity: f64,
+    /// Rolling resistance [-]: a torque of at most so many times radius and normal force; a pair uses the greater.
+    #[serde(default)]
+    pub rolling_resistance: f64,
+    /// Share of the slip speed given back by an impact, 0 to 1; a pair uses the lesser.
+    #[serde(default)]
+    pub tangential_elasticity: f64,
+    /// Motion of a fixed body that is moved.
+    pub motion: Option<MotionData>,
     /// Names of bodies with which this one never collides, nor they with it.
     #[serde(default)]
     pub passes_through: Vec<String>,
+}
+
+/// Motion of a fixed body.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionData {
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: Option<Vector>,
+    /// Angular velocity [rad/s].
+    pub angular_velocity: Option<f64>,
+    /// Oscillation; not simulated yet.
+    pub oscillate: Option<serde::de::IgnoredAny>,
+    /// Motion by a table; not simulated yet.
+    pub table: Option<serde::de::IgnoredAny>,
 }
 
 fn full_elasticity() -> f64 {

@@ -23,7 +23,7 @@ mod validate;
 mod varied;
 mod vector;
 
-pub use body::{BodyData, WORLD};
+pub use body::{BodyData, MotionData, WORLD};
 pub use connector::{
     ConnectorData, ConnectorOptions, LengthData, NormalFrame, PinData, PointData, RailData, RailPath,
     RailStopData, SlotData,
@@ -136,7 +136,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] for a tolerance that is not a positive number up to 1.
     pub fn set_tolerance(&mut self, tolerance: f64, origin: &str) -> Result<(), SceneError> {
-        self.set_run(RunData { tolerance, ..self.run.clone() }, origin)
+        self.set_run(RunData { tolerance: Some(tolerance), ..self.run.clone() }, origin)
     }
 
     /// Sets the duration [s]; an error names `origin` instead of a field.

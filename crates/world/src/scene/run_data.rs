@@ -1,7 +1,7 @@
 //! The table `[run]` of a scene: duration, accuracy, impact law, integrator.
 
 use crate::settings::{Integrator, Stabilization};
-use halfgap_contact::ImpactLaw;
+use halfgap_contact::{ImpactLaw, Restitution};
 use serde::Deserialize;
 
 /// Default number of recorded states of a run.
@@ -18,12 +18,14 @@ pub struct RunData {
     pub start_time: f64,
     /// Interval between recorded states [s]; by default a 400th of the duration.
     pub output_step: Option<f64>,
-    /// Relative accuracy asked for [-], above 0 and at most 1.
-    #[serde(default = "default_tolerance")]
-    pub tolerance: f64,
+    /// Relative accuracy asked for [-], above 0 and at most 1; 1e-8 if not given.
+    pub tolerance: Option<f64>,
     /// How the world advances.
     #[serde(default)]
     pub strategy: StrategyData,
+    /// What elasticity means where there is friction.
+    #[serde(default, with = "RestitutionNames")]
+    pub restitution: Restitution,
     /// Impact law.
     #[serde(default, with = "ImpactLawNames")]
     pub impact_law: ImpactLaw,
@@ -63,6 +65,12 @@ impl RunData {
         self.start_time + self.duration
     }
 
+    /// Relative accuracy asked for [-], given or by default.
+    #[must_use]
+    pub fn tolerance_or_default(&self) -> f64 {
+        self.tolerance.unwrap_or(crate::DEFAULT_TOLERANCE)
+    }
+
     /// Interval between recorded states [s], given or by default.
     #[must_use]
     pub fn output_step_or_default(&self) -> f64 {
@@ -77,8 +85,17 @@ pub enum StrategyData {
     /// Each event at its own time.
     #[default]
     Events,
-    /// Time stepping; not supported yet.
+    /// Steps, in which contacts are problems of velocities: for piles.
     Steps,
+}
+
+/// The meanings of elasticity by their names in scene files.
+#[derive(Deserialize)]
+#[serde(remote = "Restitution", rename_all = "snake_case")]
+enum RestitutionNames {
+    Energetic,
+    Poisson,
+    Newton,
 }
 
 /// The impact laws by their names in scene files.
@@ -91,10 +108,6 @@ enum ImpactLawNames {
     SerialGrouped,
     SerialSeparateLastpass,
     SerialGroupedLastpass,
-}
-
-fn default_tolerance() -> f64 {
-    crate::DEFAULT_TOLERANCE
 }
 
 fn yes() -> bool {

@@ -2,30 +2,43 @@
 
 use super::error::SceneError;
 use super::field_path::FieldPath;
-use super::{BodyData, RunData, Scene, StrategyData};
+use super::{BodyData, Scene, StrategyData};
 
 /// Refuses the first field of the scene that is not supported yet.
 pub(super) fn check_supported(scene: &Scene) -> Result<(), SceneError> {
     let top = FieldPath::top();
-    check_run(&scene.run, &top.field("run"))?;
     for (index, body) in scene.bodies.iter().enumerate() {
-        check_body(body, &top.field("body").element(index))?;
+        check_body(body, scene.run.strategy, &top.field("body").element(index))?;
     }
     Ok(())
 }
 
-fn check_run(run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
-    match run.strategy {
-        StrategyData::Events => Ok(()),
-        StrategyData::Steps => Err(unsupported(at.field("strategy"), "the strategy \"steps\" is")),
+/// Refuses what only steps know of, where the scene advances by events, and motions that are none of a constant velocity.
+fn check_body(body: &BodyData, strategy: StrategyData, at: &FieldPath) -> Result<(), SceneError> {
+    if let Some(motion) = &body.motion {
+        let others = [("oscillate", motion.oscillate.is_some()), ("table", motion.table.is_some())];
+        if let Some((field, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
+            return Err(unsupported(at.field("motion").field(field), "a motion other than at constant velocities is"));
+        }
     }
-}
-
-fn check_body(body: &BodyData, at: &FieldPath) -> Result<(), SceneError> {
-    if body.friction > 0.0 {
-        return Err(unsupported(at.field("friction"), "friction is"));
+    if strategy == StrategyData::Steps {
+        return Ok(());
     }
-    Ok(())
+    let fields = [
+        ("friction", body.friction > 0.0, "friction"),
+        ("static_friction", body.static_friction.is_some_and(|friction| friction > 0.0), "friction"),
+        ("surface_velocity", body.surface_velocity != 0.0, "a surface that runs"),
+        ("rolling_resistance", body.rolling_resistance > 0.0, "rolling resistance"),
+        ("tangential_elasticity", body.tangential_elasticity > 0.0, "tangential elasticity"),
+        ("motion", body.motion.is_some(), "a fixed body that moves"),
+    ];
+    match fields.into_iter().find(|&(_, is_given, _)| is_given) {
+        Some((field, _, what)) => {
+            let message = format!("{what} is not supported by events yet: set `strategy = \"steps\"` in `[run]`");
+            Err(SceneError::new(at.field(field), message))
+        }
+        None => Ok(()),
+    }
 }
 
 fn unsupported(field: FieldPath, what: &str) -> SceneError {

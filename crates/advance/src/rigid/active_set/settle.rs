@@ -370,14 +370,14 @@ mod tests {
             let tall = shape(Shape::block(0.2, 1.0));
             let body = Body { shape: tall, inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 0.0 };
             let state = BodyState { position: DVec2::new(x, -0.5 - gap), ..BodyState::default() };
-            BodyPart { body, free_motion: FreeMotion::default(), state }
+            BodyPart::new(body, FreeMotion::default(), state)
         };
         let mover = |shape: Shape, y: f64, acceleration: f64| {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 3.0, elasticity: 0.0 };
             let free_motion =
                 FreeMotion { acceleration: DVec2::new(0.0, acceleration), ..FreeMotion::default() };
             let state = BodyState { position: DVec2::new(0.0, y), ..BodyState::default() };
-            BodyPart { body, free_motion, state }
+            BodyPart::new(body, free_motion, state)
         };
         let beam = mover(shape(Shape::block(2.4, 0.2)), 0.1, -9.81);
         let disc = mover(shape(Shape::disc(0.1)), -0.1 - gap, push);
@@ -418,10 +418,10 @@ mod tests {
         let wall = |side: f64| {
             let apart = 1.0 + FINE.tolerances.target_gap;
             let state = at(side * apart, -1e-14 * side);
-            BodyPart { body: body(Shape::block(1.0, 8.0), 0.0), free_motion: FreeMotion::default(), state }
+            BodyPart::new(body(Shape::block(1.0, 8.0), 0.0), FreeMotion::default(), state)
         };
         let free_motion = FreeMotion { acceleration: DVec2::new(0.0, -9.81), ..FreeMotion::default() };
-        let block = BodyPart { body: body(Shape::block(1.0, 1.0), 1.0), free_motion, state: at(0.0, 0.0) };
+        let block = BodyPart::new(body(Shape::block(1.0, 1.0), 1.0), free_motion, at(0.0, 0.0));
         let parts = RigidParts { bodies: vec![wall(-1.0), wall(1.0), block], ..RigidParts::default() };
         let rooms = rooms_of(parts, FINE, Time::ZERO);
         assert!(group_of(&rooms.assembly, &rooms.groups, BodyId(2)).is_none(), "nothing holds it");

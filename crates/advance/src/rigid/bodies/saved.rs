@@ -2,6 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::force_law::ForceLaw;
+use crate::rigid::bodies::force_laws::ForceLaws;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::parts::PartsError;
 use halfgap_geometry::ShapePool;
@@ -25,11 +26,21 @@ impl Assembly {
         &mut self,
         force_laws: Vec<Arc<dyn ForceLaw>>,
     ) -> Result<(), PartsError> {
-        let (given, count) = (force_laws.len(), self.force_laws.count());
+        self.force_laws.restore(force_laws)
+    }
+}
+
+impl ForceLaws {
+    /// Puts back the force laws, which are not saved.
+    ///
+    /// # Errors
+    /// Too many or too few of them.
+    pub(crate) fn restore(&mut self, force_laws: Vec<Arc<dyn ForceLaw>>) -> Result<(), PartsError> {
+        let (given, count) = (force_laws.len(), self.count());
         if given != count {
             return Err(PartsError::OtherLaws { given, count });
         }
-        self.force_laws.all = force_laws;
+        self.all = force_laws;
         Ok(())
     }
 }

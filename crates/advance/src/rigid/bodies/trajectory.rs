@@ -14,6 +14,7 @@ const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
 /// Uniform acceleration and linear damping of a body in free flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeMotion {
     /// Uniform acceleration [m/s^2].
     pub acceleration: DVec2,

@@ -60,7 +60,7 @@ impl Rooms {
         let settings = RigidSettings { region_steps, ..settings };
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;
         let trajectory =
-            |BodyPart { body, free_motion, state }| Trajectory::new(body, free_motion, state, start);
+            |BodyPart { body, free_motion, state, .. }| Trajectory::new(body, free_motion, state, start);
         let trajectories: Vec<Trajectory> = bodies.into_iter().map(trajectory).collect();
         let movings: Vec<Moving> =
             trajectories.iter().map(|trajectory| trajectory.moving_at(start)).collect();

@@ -121,7 +121,7 @@ mod tests {
             let rod = ConnectorKind::Rod { a, b, length: point.distance(position) };
             Connector::new(rod, 0.0).expect("a fine rod")
         });
-        let (bodies, connectors) = (vec![BodyPart { body, free_motion, state }], rods.collect());
+        let (bodies, connectors) = (vec![BodyPart::new(body, free_motion, state)], rods.collect());
         let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         rooms_of(parts, FINE, Time::ZERO)
     }

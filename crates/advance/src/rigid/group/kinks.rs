@@ -85,7 +85,7 @@ mod tests {
         let state = BodyState { position, velocity, ..BodyState::default() };
         let rail = ConnectorKind::Rail { a: Anchor { body: BodyId(0), point: DVec2::ZERO }, path };
         let connectors = vec![Connector::new(rail, 0.0).expect("a fine rail")];
-        let bodies = vec![BodyPart { body, free_motion: FreeMotion::default(), state }];
+        let bodies = vec![BodyPart::new(body, FreeMotion::default(), state)];
         let settings = RigidSettings { steps: StepControl { local_error, ..FINE.steps }, ..FINE };
         let parts = RigidParts { bodies, connectors, ..RigidParts::default() };
         let mut rooms = rooms_of(parts, settings, Time::ZERO);

@@ -105,7 +105,7 @@ mod tests {
         let body = |shape: Result<Shape, _>, inverse_mass: f64, position: DVec2, state: BodyState| {
             let shape = shape.expect("a fine size");
             let body = Body { shape, inverse_mass, inverse_moment: inverse_mass, elasticity: 0.0 };
-            BodyPart { body, free_motion: FreeMotion::default(), state: BodyState { position, ..state } }
+            BodyPart::new(body, FreeMotion::default(), BodyState { position, ..state })
         };
         let going = |x: f64, y: f64| BodyState { velocity: DVec2::new(x, y), ..BodyState::default() };
         let side = 0.5 + gap;

@@ -62,7 +62,7 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let (position, velocity) = (DVec2::new(x, 0.0), DVec2::new(speed, 0.0));
             let state = BodyState { position, velocity, ..BodyState::default() };
-            BodyPart { body, free_motion: FreeMotion::default(), state }
+            BodyPart::new(body, FreeMotion::default(), state)
         });
         let parts = RigidParts { bodies: Vec::from(bodies), ..RigidParts::default() };
         RigidSystem::new(parts, FINE, Time::ZERO).expect("nothing rests")

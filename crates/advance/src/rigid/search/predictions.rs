@@ -346,7 +346,7 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let (position, velocity) = (DVec2::new(side, 0.1 * side), DVec2::new(-side, 0.0));
             let state = BodyState { position, velocity, angular_velocity: spin, ..BodyState::default() };
-            BodyPart { body, free_motion: FreeMotion::default(), state }
+            BodyPart::new(body, FreeMotion::default(), state)
         };
         let parts = RigidParts { bodies: vec![block(-1.0, 0.3), block(1.0, 0.4)], ..RigidParts::default() };
         let mut rooms = rooms_of(parts, FINE, Time::from_seconds(10.0));

@@ -213,7 +213,7 @@ mod tests {
         let body = BodyId(0);
         let shape = Shape::disc(0.5).expect("a fine radius");
         let disc = Body { shape, inverse_mass: 1.0, inverse_moment: 8.0, elasticity: 0.0 };
-        let disc = BodyPart { body: disc, free_motion: FreeMotion::default(), state: BodyState::default() };
+        let disc = BodyPart::new(disc, FreeMotion::default(), BodyState::default());
         let clock = Clock { rings: later.seconds() + delay, bodies: [body] };
         let parts =
             RigidParts { bodies: vec![disc], force_laws: vec![Arc::new(clock)], ..RigidParts::default() };

@@ -64,7 +64,7 @@ mod tests {
             let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 1.0 };
             let position = DVec2::new(side * (0.5 + 0.5e-10), 0.0);
             let state = BodyState { position, velocity: DVec2::new(-side, 0.0), ..BodyState::default() };
-            BodyPart { body, free_motion: FreeMotion::default(), state }
+            BodyPart::new(body, FreeMotion::default(), state)
         };
         let parts = RigidParts { bodies: vec![disc(-1.0), disc(1.0)], ..RigidParts::default() };
         let rooms = rooms_of(parts, FINE, Time::from_seconds(1.0));

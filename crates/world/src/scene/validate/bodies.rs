@@ -3,7 +3,7 @@
 use super::{At, Names, each, optional, shape};
 use crate::scene::body::WORLD;
 use crate::scene::error::SceneError;
-use crate::scene::{BodyData, Vector};
+use crate::scene::{BodyData, MotionData, Vector};
 use std::collections::BTreeMap;
 
 /// Collects the names of all bodies, and checks that they are not empty, not reserved, and unique.
@@ -47,10 +47,23 @@ pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Resul
     }
     at.field("elasticity").zero_to_one(body.elasticity)?;
     at.field("friction").not_negative(body.friction, "")?;
+    optional(body.static_friction, |friction| at.field("static_friction").not_negative(friction, ""))?;
+    at.field("surface_velocity").finite(body.surface_velocity)?;
+    at.field("rolling_resistance").not_negative(body.rolling_resistance, "")?;
+    at.field("tangential_elasticity").zero_to_one(body.tangential_elasticity)?;
+    optional(body.motion.as_ref(), |motion| validate_motion(motion, body, &at.field("motion")))?;
     each(&at.field("passes_through"), &body.passes_through, |other, at| {
         names.require(other, at)?;
         if *other == body.name { Err(at.error("is the body itself, which it cannot meet")) } else { Ok(()) }
     })
+}
+
+fn validate_motion(motion: &MotionData, body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {
+    if !body.fixed {
+        return Err(at.error("only a fixed body is moved: give it `fixed = true`, or a `velocity` instead"));
+    }
+    optional(motion.velocity, |velocity| at.field("velocity").finite_point(velocity))?;
+    optional(motion.angular_velocity, |spin| at.field("angular_velocity").finite(spin))
 }
 
 fn validate_inertia(body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {

@@ -27,7 +27,7 @@ pub(super) fn validate(run: &RunData, at: &At<'_>) -> Result<(), SceneError> {
         let message = format!("would record {outputs:.0} states, at most {MOST_OUTPUTS} are allowed");
         if outputs <= MOST_OUTPUTS { Ok(()) } else { Err(at.error(message)) }
     })?;
-    tolerance(run.tolerance, &at.field("tolerance"))?;
+    optional(run.tolerance, |value| tolerance(value, &at.field("tolerance")))?;
     optional(run.target_gap, |gap| at.field("target_gap").positive(gap, "m"))?;
     optional(run.velocity_tol, |velocity| at.field("velocity_tol").positive(velocity, "m/s"))?;
     optional(run.accuracy, |accuracy| {

@@ -1,0 +1,153 @@
+//! The bodies of a system that is advanced by steps: their places at the start of the present step, the velocities with which
+//! they go through it, and what can be read in between.
+//!
+//! *Invariant*: a body goes straight from the start of a step to its end, with the velocity in its middle; what is read in
+//! between is the parabola that has this velocity there and the acceleration of the step.
+
+use crate::rigid::{BodyPart, FreeMotion, Surface};
+use glam::DVec2;
+use halfgap_collision::{Body, BodyId, BodyState, Moving};
+use halfgap_contact::InverseInertia;
+
+/// What does not change about a body.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Nature {
+    pub(super) body: Body,
+    pub(super) free_motion: FreeMotion,
+    pub(super) surface: Surface,
+    /// Largest distance [m] of a point from the centre of mass.
+    pub(super) reach: f64,
+}
+
+/// Velocities, accelerations or displacements of x, y and angle.
+pub(super) type Motion3 = [f64; 3];
+
+/// The motion of a body through the present step.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Course {
+    /// Place at the start of the step.
+    pub(super) position: DVec2,
+    pub(super) angle: f64,
+    /// Velocity in the middle of the step, with which the body goes from its start to its end.
+    pub(super) middle: Motion3,
+    /// Velocity in the middle of the step without what slows down bodies that are to hit each other at its end.
+    pub(super) smooth: Motion3,
+    /// Acceleration of the step.
+    pub(super) acceleration: Motion3,
+    /// The part of it that is due to contacts and connectors.
+    pub(super) pushed: Motion3,
+}
+
+impl Course {
+    /// State at a time `since` [s] the start of a step of a length `span` [s].
+    #[inline]
+    pub(super) fn state_at(&self, since: f64, span: f64) -> BodyState {
+        let ([x, y, spin], [u, v, turn]) = (self.middle, self.smooth);
+        let [ax, ay, turning] = self.acceleration;
+        let (late, bend) = (since - 0.5 * span, 0.5 * since * (since - span));
+        BodyState {
+            position: self.position + DVec2::new(since * x + bend * ax, since * y + bend * ay),
+            angle: self.angle + since * spin + bend * turning,
+            velocity: DVec2::new(u + late * ax, v + late * ay),
+            angular_velocity: turn + late * turning,
+        }
+    }
+}
+
+/// All bodies; a fixed one has no inverse mass, and moves as it is told.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Bodies {
+    pub(super) natures: Vec<Nature>,
+    pub(super) courses: Vec<Course>,
+    /// Motions at the start of the present step: poses there, velocities as they are known before it.
+    pub(super) movings: Vec<Moving>,
+}
+
+impl Bodies {
+    pub(super) fn new(parts: Vec<BodyPart>) -> Self {
+        let courses = parts.iter().map(|BodyPart { body, state, motion, .. }| {
+            let velocity = match motion {
+                Some(motion) => [motion.velocity.x, motion.velocity.y, motion.angular_velocity],
+                None if body.is_fixed() => [0.0; 3],
+                None => [state.velocity.x, state.velocity.y, state.angular_velocity],
+            };
+            Course { position: state.position, angle: state.angle, middle: velocity, smooth: velocity, ..Course::default() }
+        });
+        let courses: Vec<Course> = courses.collect();
+        let movings = courses.iter().map(|course| Moving::from(&course.state_at(0.0, 0.0))).collect();
+        let natures = parts.into_iter().map(|BodyPart { body, free_motion, surface, .. }| {
+            let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
+            Nature { reach: body.shape.reach(), body, free_motion, surface }
+        });
+        Self { natures: natures.collect(), courses, movings }
+    }
+
+    #[inline]
+    pub(super) fn count(&self) -> usize {
+        self.natures.len()
+    }
+
+    /// True for a body that no force moves, and for the background.
+    #[inline]
+    pub(super) fn is_fixed(&self, body: BodyId) -> bool {
+        body.is_world() || self.natures[body.index()].body.is_fixed()
+    }
+
+    /// Motion of a body at the start of the present step; the background rests at the origin.
+    #[inline]
+    pub(super) fn moving(&self, body: BodyId) -> Moving {
+        if body.is_world() { Moving::BACKGROUND } else { self.movings[body.index()] }
+    }
+
+    #[inline]
+    pub(super) fn inertia(&self, body: BodyId) -> InverseInertia {
+        if body.is_world() {
+            return InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        }
+        let Body { inverse_mass, inverse_moment, .. } = self.natures[body.index()].body;
+        InverseInertia { inverse_mass, inverse_moment }
+    }
+
+    /// Sets a place anew, with the velocity that is known there.
+    pub(super) fn place(&mut self, body: usize, state: &BodyState) {
+        let course = &mut self.courses[body];
+        (course.position, course.angle) = (state.position, state.angle);
+        self.movings[body] = Moving::from(state);
+    }
+
+    /// Shifts a body at the start of the present step.
+    pub(super) fn shift(&mut self, body: usize, [x, y, turn]: Motion3) {
+        let (course, moving) = (&mut self.courses[body], &mut self.movings[body]);
+        course.position += DVec2::new(x, y);
+        course.angle += turn;
+        let Moving { velocity, angular_velocity, .. } = *moving;
+        let state = BodyState { position: course.position, angle: course.angle, velocity, angular_velocity };
+        *moving = Moving::from(&state);
+    }
+
+    /// Kinetic energy [J] of a body at given velocities.
+    pub(super) fn kinetic_energy(&self, body: usize, [x, y, spin]: Motion3) -> f64 {
+        let Body { inverse_mass, inverse_moment, .. } = self.natures[body].body;
+        if inverse_mass > 0.0 { 0.5 * ((x * x + y * y) / inverse_mass + spin * spin / inverse_moment) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_under_constant_acceleration_is_a_parabola() {
+        let (v, a, span) = (3.0, -10.0, 0.5);
+        let course = Course { middle: [v + 0.5 * span * a, 0.0, 0.0], smooth: [v + 0.5 * span * a, 0.0, 0.0], acceleration: [a, 0.0, 0.0], ..Course::default() };
+        for share in 0..=4 {
+            let since = 0.25 * f64::from(share) * span;
+            let state = course.state_at(since, span);
+            assert!((state.position.x - (v * since + 0.5 * a * since * since)).abs() < 1e-15);
+            assert!((state.velocity.x - (v + a * since)).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! The books of an advance by steps: where energy went, and counts.
+//!
+//! *Invariant*: what is booked at the start of a step reaches to the middle of it; with the powers of the step it is known at
+//! every time within.
+
+use crate::rigid::{Counts, Ledger};
+use crate::stepping::bodies::{Motion3, Nature};
+use crate::stepping::rows::{Row, Source};
+
+/// Sums up to the middle of the present step, and powers [W] within it.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct StepBooks {
+    ledger: Ledger,
+    counts: Counts,
+    contacts: f64,
+    damping: f64,
+    laws: Vec<f64>,
+}
+
+impl StepBooks {
+    pub(super) fn new(laws: usize) -> Self {
+        let ledger = Ledger { force_laws: vec![0.0; laws], ..Ledger::default() };
+        Self { ledger, laws: vec![0.0; laws], ..Self::default() }
+    }
+
+    /// Adds a force law.
+    pub(super) fn add_law(&mut self) {
+        self.ledger.force_laws.push(0.0);
+        self.laws.push(0.0);
+    }
+
+    /// Begins a step `late` [s] after the middle of the one before, if bodies set out from there with known velocities; from there
+    /// on the powers are those of the new step.
+    pub(super) fn begin(&mut self, late: f64) {
+        self.ledger.steps += late * self.contacts;
+        self.ledger.damping += late * self.damping;
+        for (work, power) in self.ledger.force_laws.iter_mut().zip(&mut self.laws) {
+            *work += late * std::mem::take(power);
+        }
+        (self.contacts, self.damping) = (0.0, 0.0);
+        self.counts.segments += 1;
+        self.counts.events += 1;
+    }
+
+    /// Books what contacts, connectors and damping did to a body in a time `span` [s] that ends in the middle of the step. It went
+    /// at a mean velocity, and has changed by `pushed` beyond what forces without contacts do.
+    pub(super) fn book_body(&mut self, nature: &Nature, mean: Motion3, pushed: Motion3, span: f64, is_present: bool) {
+        let inverse = [nature.body.inverse_mass, nature.body.inverse_mass, nature.body.inverse_moment];
+        let free = &nature.free_motion;
+        let rates = [free.linear_rate, free.linear_rate, free.angular_rate];
+        let (mut work, mut damped) = (0.0, 0.0);
+        for k in 0..3 {
+            work += mean[k] * pushed[k] / inverse[k];
+            damped -= rates[k] * mean[k] * mean[k] / inverse[k];
+        }
+        self.ledger.steps += work;
+        self.ledger.damping += span * damped;
+        if is_present {
+            self.contacts += work / span;
+            self.damping += damped;
+        }
+    }
+
+    /// Books what a force law did in a time `span` [s] that ends in the middle of the step.
+    pub(super) fn book_law(&mut self, law: usize, power: f64, span: f64, is_present: bool) {
+        self.ledger.force_laws[law] += span * power;
+        if is_present {
+            self.laws[law] += power;
+        }
+    }
+
+    pub(super) fn book_impact(&mut self, change: f64) {
+        self.ledger.impacts += change;
+        self.counts.impacts += 1;
+    }
+
+    pub(super) fn book_projection(&mut self, change: f64) {
+        self.ledger.projections += change;
+    }
+
+    pub(super) fn book_intervention(&mut self, change: f64) {
+        self.ledger.interventions += change;
+    }
+
+    pub(super) fn note_row(&mut self, row: &Row, target_gap: f64) {
+        match row.source {
+            Source::Contact { .. } if row.touches => self.counts.note_gap(row.gap + target_gap),
+            Source::Connector { .. } if row.is_bilateral => self.counts.note_connector_error(row.gap.abs()),
+            _ => {}
+        }
+    }
+
+    pub(super) fn note_solve(&mut self) {
+        self.counts.contact_solves += 1;
+    }
+
+    pub(super) fn note_kinetic(&mut self, energy: f64) {
+        self.counts.largest_kinetic_energy = self.counts.largest_kinetic_energy.max(energy);
+    }
+
+    pub(super) fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Writes the ledger of a time `late` [s] after the middle of the present step.
+    pub(super) fn write(&self, late: f64, ledger: &mut Ledger) {
+        ledger.clone_from(&self.ledger);
+        ledger.steps += late * self.contacts;
+        ledger.damping += late * self.damping;
+        for (work, power) in ledger.force_laws.iter_mut().zip(&self.laws) {
+            *work += late * power;
+        }
+    }
+}

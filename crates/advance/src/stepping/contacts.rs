@@ -1,0 +1,125 @@
+//! What is remembered of the contacts of a pair of bodies from one step to the next.
+//!
+//! *Invariant*: two features have at most one contact, and no two contacts of a pair lie at one place.
+
+use glam::DVec2;
+use halfgap_collision::{Moving, Nearness, turned, visit_near_features};
+use halfgap_geometry::{FeatureId, GapSample, Shape};
+
+/// Where a contact sticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Hold {
+    /// It slips, or carries no force.
+    Slips,
+    /// It sticks where it is next measured.
+    Here,
+    /// It sticks at this value [m] of the coordinate along the surface.
+    At(f64),
+}
+
+/// Two features of a pair that are near each other.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Contact {
+    /// Features of the two bodies, in the order of the pair.
+    pub(super) features: [FeatureId; 2],
+    /// Forces [N, N, N m] of the last step along the normal, along the surface, and against rolling.
+    pub(super) forces: [f64; 3],
+    /// It carried a force in the last step.
+    pub(super) presses: bool,
+    /// Whether it sticks, and where.
+    pub(super) hold: Hold,
+    /// Angle [rad] of the normal with its whole turns.
+    pub(super) normal_angle: f64,
+    /// Speed [m/s] at which it touches at the end of the step, if that is an impact.
+    pub(super) arrival: Option<f64>,
+}
+
+impl Contact {
+    fn new(features: [FeatureId; 2], normal: DVec2) -> Self {
+        Self {
+            features,
+            forces: [0.0; 3],
+            presses: false,
+            hold: Hold::Slips,
+            normal_angle: turned(normal, 0.0),
+            arrival: None,
+        }
+    }
+}
+
+/// A contact as it is found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    features: [FeatureId; 2],
+    pub(super) sample: GapSample,
+}
+
+/// Directions of normals that differ by less than this sine belong to one place.
+const ONE_PLACE: f64 = 0.1;
+
+/// Finds the contacts of two bodies anew in `contacts`; those that go on keep what is remembered of them, and those that come
+/// take it from the nearest that went, such as a disc that rolls from one edge to the next.
+pub(super) fn find_contacts(
+    [a, b]: [(&Shape, &Moving); 2],
+    nearness: &Nearness,
+    contacts: &mut Vec<Contact>,
+    found: &mut Vec<Found>,
+    gone: &mut Vec<Contact>,
+) {
+    found.clear();
+    visit_near_features([a, b], nearness, &mut |features, sample| {
+        found.push(Found { features, sample: *sample });
+    });
+    if found.len() > 1 {
+        drop_doubles(found, nearness);
+    }
+    gone.clear();
+    gone.append(contacts);
+    for Found { features, sample } in found.iter() {
+        let old = gone.iter().position(|contact| contact.features == *features);
+        contacts.push(match old {
+            Some(place) => gone.swap_remove(place),
+            None => Contact::new(*features, sample.normal),
+        });
+    }
+    // What pressed and is gone has become one of those that are new.
+    for old in gone.iter().filter(|old| old.presses) {
+        let heirs = contacts.iter_mut().filter(|contact| {
+            !contact.presses && contact.arrival.is_none() && contact.features.iter().zip(old.features).any(|(&own, other)| own == other)
+        });
+        if let Some(heir) = heirs.min_by_key(|heir| heir.features) {
+            let Contact { features, .. } = *heir;
+            // The coordinate is another one: its value is set where it is next measured.
+            let hold = if old.hold == Hold::Slips { Hold::Slips } else { Hold::Here };
+            *heir = Contact { features, hold, ..*old };
+        }
+    }
+}
+
+/// Drops what is found twice at one place, by a corner and by the edge beside it: what overlaps more stays, or the earlier.
+fn drop_doubles(found: &mut Vec<Found>, nearness: &Nearness) {
+    let middle = |sample: &GapSample| 0.5 * (sample.point_primary + sample.point_normal);
+    let mut kept = 0;
+    for next in 0..found.len() {
+        let Found { sample, .. } = found[next];
+        // From b to a, whichever is the primary side.
+        let normal = |sample: &GapSample| if sample.primary_is_a { sample.normal } else { -sample.normal };
+        let near = nearness.reach.max(sample.gap.abs());
+        let double = (0..kept).find(|&other| {
+            let other = &found[other].sample;
+            let (p, q) = (normal(&sample), normal(other));
+            p.dot(q) > 0.0 && p.perp_dot(q).abs() < ONE_PLACE && (middle(&sample) - middle(other)).length() <= near
+        });
+        match double {
+            Some(other) if sample.gap < found[other].sample.gap => found[other] = found[next],
+            Some(_) => {}
+            None => {
+                found[kept] = found[next];
+                kept += 1;
+            }
+        }
+    }
+    found.truncate(kept);
+}

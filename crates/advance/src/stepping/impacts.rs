@@ -1,0 +1,81 @@
+//! Impacts at the start of a step: contacts that have come fast, with all that touches them, by the impact law.
+
+use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::rows::Row;
+use crate::stepping::settings::SteppingSettings;
+use halfgap_contact::{CollisionRow, FrictionRow, Impact, ImpactError, RowKind};
+
+/// The impact law with its buffers.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Impacts {
+    impact: Impact,
+    /// The rows of the impact.
+    listed: Vec<u32>,
+}
+
+impl Impacts {
+    /// Number of rows of the last impact.
+    pub(super) fn listed(&self) -> &[u32] {
+        &self.listed
+    }
+
+    /// Changes the velocities of an island, in which something closes faster than `slow`, by the impact law.
+    pub(super) fn resolve(
+        &mut self,
+        bodies: &Bodies,
+        (rows, list): (&[Row], &[u32]),
+        velocities: &mut [Motion3],
+        (settings, slow): (&SteppingSettings, f64),
+        index: u64,
+    ) -> Result<(), ImpactError> {
+        self.listed.clear();
+        let rate_of = |row: &Row, velocities: &[Motion3]| {
+            let rate = row.normal.rate(row.places, velocities);
+            row.strikes.map_or(rate, |speed| rate.min(-speed))
+        };
+        let takes_part = |&&row: &&u32| {
+            let row = &rows[row as usize];
+            row.is_bilateral || row.touches && rate_of(row, velocities) <= slow
+        };
+        self.listed.extend(list.iter().filter(takes_part));
+        let made = self.listed.iter().map(|&row| {
+            let row = &rows[row as usize];
+            let inertia = row.bodies.map(|body| bodies.inertia(body));
+            let kind = if row.is_bilateral { RowKind::Bilateral } else { RowKind::Unilateral };
+            let rate = rate_of(row, velocities);
+            CollisionRow {
+                elasticity: row.elasticity,
+                velocity_tol: slow,
+                kind,
+                was_active: row.strikes.is_none(),
+                ..CollisionRow::new(row.bodies, row.normal.jacobian, inertia, rate)
+            }
+        });
+        self.impact.set_rows(made);
+        self.impact.set_restitution(settings.restitution);
+        for (place, &row) in self.listed.iter().enumerate() {
+            let row = &rows[row as usize];
+            let Some(slip) = row.slip.as_ref() else { continue };
+            let inertia = row.bodies.map(|body| bodies.inertia(body));
+            let rate = slip.line.rate(row.places, velocities) - slip.running;
+            let friction = FrictionRow {
+                tangential_elasticity: slip.tangential_elasticity,
+                ..FrictionRow::new(slip.line.jacobian, inertia, rate, slip.kinetic)
+            };
+            self.impact.set_friction(place, friction);
+        }
+        settings.rigid.impact_law.resolve(&mut self.impact, settings.rigid.order, index)?;
+        for (place, &row) in self.listed.iter().enumerate() {
+            let row = &rows[row as usize];
+            let impulse = self.impact.impulses()[place];
+            if impulse != 0.0 {
+                row.normal.push(row.places, velocities, impulse);
+            }
+            if let Some(slip) = &row.slip {
+                slip.line.push(row.places, velocities, self.impact.friction_impulse(place));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,202 @@
+//! Lists the rows of a step: contacts that bodies may make within it, and connectors.
+
+use crate::rigid::PairSurface;
+use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::contacts::{Contact, Found, Hold, find_contacts};
+use crate::stepping::pairs::{Pair, Pairs};
+use crate::stepping::rows::{Drag, Line, Row, Source};
+use crate::stepping::ties::Ties;
+use glam::DVec2;
+use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned};
+use halfgap_geometry::{Aabb, GapKind, GapSample};
+
+/// Coefficients of the relative turning of two bodies.
+const TURNING: [f64; 6] = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0];
+
+/// Overlap that is looked for, as a multiple of the deepest of a pair in the last step [-]: other features may overlap a little more.
+const DEEPER: f64 = 1.5;
+
+/// What the listing works with.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Listing {
+    /// Where each body will be during the step.
+    boxes: Vec<Aabb>,
+    #[cfg_attr(feature = "save", serde(skip))]
+    found: Vec<Found>,
+    gone: Vec<Contact>,
+}
+
+/// Lengths of a step that decide what is near.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths {
+    /// Length of the step [s].
+    pub(super) span: f64,
+    /// Gap at which bodies touch [m].
+    pub(super) target_gap: f64,
+    /// Error of positions that does not matter [m].
+    pub(super) slack: f64,
+}
+
+impl Listing {
+    /// Lists the rows of a step in `rows`. Bodies set out with velocities `free`, those without contacts in the step.
+    pub(super) fn list(
+        &mut self,
+        bodies: &Bodies,
+        (pairs, ties): (Option<&mut Pairs>, &mut Ties),
+        free: &[Motion3],
+        lengths: Lengths,
+        rows: &mut Vec<Row>,
+    ) {
+        rows.clear();
+        ties.follow(bodies);
+        list_ties(bodies, ties, lengths, rows);
+        let Some(pairs) = pairs else { return };
+        self.boxes.clear();
+        for (place, nature) in bodies.natures.iter().enumerate() {
+            let way = lengths.span * fastest(nature.reach, free[place]);
+            let bounds = nature.body.shape.bounds_at(&bodies.movings[place].pose);
+            self.boxes.push(bounds.grown(way + lengths.target_gap));
+            pairs.cover(bodies, BodyId::from_index(place), self.boxes[place]);
+        }
+        for (index, pair) in pairs.all_mut().iter_mut().enumerate() {
+            let places = pair.bodies.map(BodyId::index);
+            if !self.boxes[places[0]].overlaps(&self.boxes[places[1]]) {
+                pair.contacts.clear();
+                pair.deepest = 0.0;
+                continue;
+            }
+            let [p, q] = places.map(|place| free[place]);
+            let reaches = places.map(|place| bodies.natures[place].reach);
+            let relative = fastest(0.0, [p[0] - q[0], p[1] - q[1], 0.0]);
+            let way = lengths.span * (relative + p[2].abs() * reaches[0] + q[2].abs() * reaches[1]);
+            let nearness = Nearness {
+                reach: way + 2.0 * lengths.target_gap,
+                // What overlaps more has done so before, or it would lie behind another edge.
+                depth: way + DEEPER * pair.deepest + lengths.slack,
+                overrun: lengths.slack,
+            };
+            let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
+            find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
+            pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
+            for (contact, found) in self.found.iter().enumerate() {
+                rows.push(row_of(bodies, pair, (index, contact), &found.sample, lengths));
+            }
+        }
+    }
+}
+
+/// Speed [m/s] of the fastest point of a body.
+fn fastest(reach: f64, [x, y, spin]: Motion3) -> f64 {
+    DVec2::new(x, y).length() + spin.abs() * reach
+}
+
+/// The row of a contact as it is measured.
+fn row_of(
+    bodies: &Bodies,
+    pair: &mut Pair,
+    (index, place): (usize, usize),
+    sample: &GapSample,
+    lengths: Lengths,
+) -> Row {
+    let Pair { bodies: of_pair, surface, elasticity, contacts, .. } = pair;
+    let contact = &mut contacts[place];
+    let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
+    let ids = sides.map(|side: usize| of_pair[side]);
+    let [primary, normal] = ids.map(|body| &bodies.movings[body.index()]);
+    let inertia = ids.map(|body| bodies.inertia(body));
+    let kinematics = GapKinematics::of(sample, primary, normal);
+    let gap = sample.gap - lengths.target_gap;
+    let mut row = Row {
+        source: Source::Contact { pair: index as u32, contact: place as u32 },
+        bodies: ids,
+        places: ids.map(BodyId::index),
+        point: sample.point_primary,
+        is_bilateral: false,
+        gap,
+        touches: contact.presses || gap <= lengths.slack,
+        elasticity: *elasticity,
+        strikes: contact.arrival,
+        arrives: None,
+        normal: Line::new(kinematics.jacobian, inertia, kinematics.gamma),
+        slip: None,
+        roll: None,
+    };
+    if surface.has_friction() {
+        let features = sides.map(|side: usize| bodies.natures[of_pair[side].index()].body.shape.feature(contact.features[side]));
+        let radii = features.map(|feature| feature.radius());
+        let touch = Touch { sample, radii, bodies: [primary, normal], kept_gap: lengths.target_gap };
+        let speeds = sides.map(|side: usize| surface.speeds[side]);
+        let tangent = TangentRow::of(&touch, &kinematics, speeds);
+        row.slip = Some(Drag {
+            line: Line::new(tangent.jacobian, inertia, tangent.gamma),
+            off: way_off(contact, &touch, lengths.span * (speeds[0] + speeds[1])),
+            running: speeds[0] + speeds[1],
+            tangential_elasticity: surface.tangential_elasticity,
+            coefficient: if contact.hold == Hold::Slips { surface.kinetic } else { surface.sticking },
+            kinetic: surface.kinetic,
+        });
+        row.roll = rolling(surface, radii, inertia);
+    }
+    row
+}
+
+/// Way [m] along the surface from where a contact sticks. Where surfaces run, the place at which it sticks runs along by `run` [m]
+/// in each step.
+fn way_off(contact: &mut Contact, touch: &Touch<'_>, run: f64) -> f64 {
+    if contact.hold == Hold::Slips {
+        return 0.0;
+    }
+    if touch.sample.kind == GapKind::CenterCenter {
+        contact.normal_angle = turned(touch.sample.normal, contact.normal_angle);
+    }
+    let now = touch.coordinate(contact.normal_angle);
+    let at = if let Hold::At(at) = contact.hold { at + run } else { now };
+    contact.hold = Hold::At(at);
+    now - at
+}
+
+/// The row against rolling, where there is a radius to roll on.
+fn rolling(
+    surface: &PairSurface,
+    radii: [Option<f64>; 2],
+    inertia: [halfgap_contact::InverseInertia; 2],
+) -> Option<Drag> {
+    let curvature = radii.iter().flatten().map(|&radius| if radius == 0.0 { f64::INFINITY } else { 1.0 / radius });
+    let radius = 1.0 / curvature.sum::<f64>().abs();
+    if surface.rolling == 0.0 || radius == 0.0 || !radius.is_finite() {
+        return None;
+    }
+    let coefficient = surface.rolling * radius;
+    let line = Line::new(TURNING, inertia, 0.0);
+    Some(Drag { line, off: 0.0, running: 0.0, tangential_elasticity: 0.0, coefficient, kinetic: coefficient })
+}
+
+fn list_ties(bodies: &Bodies, ties: &Ties, lengths: Lengths, rows: &mut Vec<Row>) {
+    for (index, connector) in ties.all.iter().enumerate() {
+        let tie = &ties.memory[index];
+        let ids = connector.bodies();
+        if ids.iter().all(|&body| bodies.is_fixed(body)) {
+            continue;
+        }
+        let inertia = ids.map(|body| bodies.inertia(body));
+        for direction in 0..connector.row_count() {
+            let sample = ties.measure(bodies, index, direction);
+            rows.push(Row {
+                source: Source::Connector { connector: index as u32, direction: direction as u32 },
+                bodies: ids,
+                places: ids.map(|body| if body.is_world() { bodies.count() } else { body.index() }),
+                point: sample.point_a,
+                is_bilateral: connector.is_bilateral(),
+                gap: sample.gap,
+                touches: connector.is_bilateral() || tie.presses || sample.gap <= lengths.slack,
+                elasticity: connector.elasticity,
+                strikes: tie.arrival,
+                arrives: None,
+                normal: Line::new(sample.kinematics.jacobian, inertia, sample.kinematics.gamma),
+                slip: None,
+                roll: None,
+            });
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Advance by steps of one length, in which contacts are problems of velocities: for worlds of many bodies, with friction.
+//!
+//! *Invariant*: a system is at the start of a step, and knows how its bodies go through it; a step depends on nothing but the one
+//! before.
+//!
+//! `settings` · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
+//! remembered of where they touch · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `listing`: what contacts
+//! and connectors ask of velocities · `islands` · `exact`, `sweeps`: impulses · `impacts` · `projection`: back to the gaps · `step`:
+//! from one step to the next · `books` · `system`: what callers see.
+
+mod bodies;
+mod books;
+mod contacts;
+mod exact;
+mod impacts;
+mod islands;
+mod kicks;
+mod listing;
+mod pairs;
+mod projection;
+mod rows;
+mod settings;
+mod step;
+mod sweeps;
+mod system;
+mod ties;
+
+pub use settings::SteppingSettings;
+#[cfg(feature = "save")]
+pub use system::SavedStepping;
+pub use system::SteppingSystem;

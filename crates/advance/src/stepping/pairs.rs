@@ -1,0 +1,132 @@
+//! Pairs of bodies that are near each other, found by boxes that a body may move in before they are looked at again.
+//!
+//! *Invariant*: two bodies whose boxes overlap are listed once, unless both are fixed or they pass through each other.
+
+use crate::rigid::{PairSurface, Surface};
+use crate::stepping::bodies::{Bodies, Nature};
+use crate::stepping::contacts::Contact;
+use halfgap_collision::{BodyId, BroadPhase};
+use halfgap_geometry::Aabb;
+
+/// Margin of a box, as a fraction of the reach of its body [-]: a body at rest is looked up once, one that moves once in some steps.
+const MARGIN: f64 = 0.1;
+
+/// A pair of bodies.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Pair {
+    /// The bodies, the lesser first.
+    pub(super) bodies: [BodyId; 2],
+    pub(super) surface: PairSurface,
+    pub(super) elasticity: f64,
+    pub(super) contacts: Vec<Contact>,
+    /// Deepest overlap [m] in the last step; 0 if there was none.
+    pub(super) deepest: f64,
+}
+
+/// All pairs.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Pairs {
+    all: Vec<Pair>,
+    /// Places of the pairs of each body; none of fixed ones, whose lists would be the longest.
+    of_body: Vec<Vec<u32>>,
+    broad: BroadPhase,
+    /// Pairs that pass through each other, the lesser body first, sorted.
+    excluded: Vec<(BodyId, BodyId)>,
+    found: Vec<BodyId>,
+}
+
+impl Pairs {
+    pub(super) fn new(count: usize, excluded: Vec<(BodyId, BodyId)>) -> Self {
+        let mut excluded: Vec<_> = excluded.into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
+        excluded.sort_unstable();
+        excluded.dedup();
+        Self { of_body: vec![Vec::new(); count], excluded, ..Self::default() }
+    }
+
+    pub(super) fn excluded(&self) -> &[(BodyId, BodyId)] {
+        &self.excluded
+    }
+
+    pub(super) fn all(&self) -> &[Pair] {
+        &self.all
+    }
+
+    pub(super) fn all_mut(&mut self) -> &mut [Pair] {
+        &mut self.all
+    }
+
+    /// Places of the pairs of a movable body.
+    pub(super) fn of(&self, body: BodyId) -> &[u32] {
+        &self.of_body[body.index()]
+    }
+
+    /// Tells where a body will be during the step; its pairs are found anew if it leaves its box.
+    pub(super) fn cover(&mut self, bodies: &Bodies, body: BodyId, bounds: Aabb) {
+        if self.broad.bounds(body).is_some_and(|boxed| boxed.contains(&bounds)) {
+            return;
+        }
+        let margin = MARGIN * bodies.natures[body.index()].reach;
+        let boxed = bounds.grown(margin);
+        self.broad.set(body, boxed);
+        if !bodies.is_fixed(body) {
+            self.drop_far(bodies, body, &boxed);
+        }
+        let mut found = std::mem::take(&mut self.found);
+        self.broad.find_overlapping(&boxed, &mut found);
+        for &other in &found {
+            self.add(bodies, [body.min(other), body.max(other)]);
+        }
+        self.found = found;
+    }
+
+    /// Drops the pairs of a body whose boxes no longer overlap.
+    fn drop_far(&mut self, bodies: &Bodies, body: BodyId, boxed: &Aabb) {
+        let mut next = 0;
+        while let Some(&place) = self.of_body[body.index()].get(next) {
+            let [a, b] = self.all[place as usize].bodies;
+            let other = if a == body { b } else { a };
+            if self.broad.bounds(other).is_some_and(|bounds| bounds.overlaps(boxed)) {
+                next += 1;
+            } else {
+                self.remove(bodies, place);
+            }
+        }
+    }
+
+    fn add(&mut self, bodies: &Bodies, [a, b]: [BodyId; 2]) {
+        let listed = if bodies.is_fixed(a) { b } else { a };
+        if a == b || bodies.is_fixed(listed) || self.excluded.binary_search(&(a, b)).is_ok() {
+            return;
+        }
+        let is_known = |&place: &u32| self.all[place as usize].bodies == [a, b];
+        if self.of_body[listed.index()].iter().any(is_known) {
+            return;
+        }
+        let place = self.all.len() as u32;
+        let natures: [&Nature; 2] = [a, b].map(|body| &bodies.natures[body.index()]);
+        let surfaces: [&Surface; 2] = natures.map(|nature| &nature.surface);
+        let elasticity = natures[0].body.elasticity.min(natures[1].body.elasticity);
+        self.all.push(Pair { bodies: [a, b], surface: PairSurface::of(surfaces), elasticity, contacts: Vec::new(), deepest: 0.0 });
+        for body in [a, b].into_iter().filter(|&body| !bodies.is_fixed(body)) {
+            self.of_body[body.index()].push(place);
+        }
+    }
+
+    /// Removes a pair; the last one takes its place.
+    fn remove(&mut self, bodies: &Bodies, place: u32) {
+        let last = (self.all.len() - 1) as u32;
+        for body in self.all[place as usize].bodies.into_iter().filter(|&body| !bodies.is_fixed(body)) {
+            self.of_body[body.index()].retain(|&other| other != place);
+        }
+        if last != place {
+            for body in self.all[last as usize].bodies.into_iter().filter(|&body| !bodies.is_fixed(body)) {
+                for other in self.of_body[body.index()].iter_mut().filter(|other| **other == last) {
+                    *other = place;
+                }
+            }
+        }
+        self.all.swap_remove(place as usize);
+    }
+}

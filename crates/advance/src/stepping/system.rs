@@ -1,0 +1,362 @@
+//! Rigid bodies that are advanced by steps: what callers may ask and do.
+
+use crate::rigid::{
+    AdvanceError, ContactChanges, Counts, ForceLaw, ForceLaws, Handled, ImpactReport, Ledger, RigidParts,
+    RowForce, Snapshot, VelocityChange,
+};
+#[cfg(feature = "save")]
+use crate::rigid::PartsError;
+use crate::stepping::bodies::Bodies;
+use crate::stepping::books::StepBooks;
+use crate::stepping::pairs::Pairs;
+use crate::stepping::rows::Source;
+use crate::stepping::settings::SteppingSettings;
+use crate::stepping::step::{From, Scene, StepError, Stepper};
+use crate::stepping::ties::Ties;
+use crate::system::EventDriven;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorId, Moving, RailHint};
+use std::sync::Arc;
+
+/// Overlap, as a fraction of the smaller body's reach, that is no fault [-].
+const ROOM: f64 = 0.1;
+
+/// System of rigid bodies that is advanced by steps.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct SteppingSystem {
+    settings: SteppingSettings,
+    scene: Scene,
+    stepper: Stepper,
+    books: StepBooks,
+    /// Start of the present step.
+    node: Time,
+    impact: ImpactReport,
+    changes: ContactChanges,
+    failure: Option<AdvanceError>,
+}
+
+impl SteppingSystem {
+    /// Makes the system of the given parts at a time. The caller must see to it that bodies do not overlap and that
+    /// connectors fit the states: neither is checked.
+    ///
+    /// # Errors
+    /// Parts or settings out of range, or an impact at the start that cannot be resolved.
+    pub fn new(parts: RigidParts, settings: SteppingSettings, start: Time) -> Result<Self, AdvanceError> {
+        parts.check(&settings.rigid, start)?;
+        let RigidParts { bodies, connectors, force_laws, excluded } = parts;
+        let count = bodies.len();
+        let books = StepBooks::new(force_laws.len());
+        let bodies = Bodies::new(bodies);
+        let laws = ForceLaws::new(force_laws, count, &Snapshot::new(start.seconds(), &bodies.movings));
+        let scene = Scene { bodies, pairs: Pairs::new(count, excluded), ties: Ties::new(connectors), laws };
+        let mut system = Self {
+            settings,
+            scene,
+            stepper: Stepper::default(),
+            books,
+            node: start,
+            impact: ImpactReport::default(),
+            changes: ContactChanges::default(),
+            failure: None,
+        };
+        system.begin(From::Start)?;
+        Ok(system)
+    }
+
+    /// Begins the step at the present node.
+    fn begin(&mut self, from: From) -> Result<(), AdvanceError> {
+        let time = self.node.seconds();
+        let outcome = self.stepper.begin(
+            &mut self.scene,
+            (&self.settings, time, self.settings.step),
+            from,
+            &mut self.books,
+        );
+        outcome.map_err(|StepError { bodies, source }| {
+            let bodies = bodies.into_iter().map(BodyId).collect();
+            let error = AdvanceError::Impact { time, bodies, between: None, source };
+            self.failure = Some(error.clone());
+            error
+        })
+    }
+
+    /// Brings all bodies to a time of the present step.
+    fn go_to(&mut self, time: Time) {
+        let (since, span) = (time.since(self.node), self.settings.step);
+        for place in 0..self.scene.bodies.count() {
+            let state = self.scene.bodies.courses[place].state_at(since, span);
+            self.scene.bodies.place(place, &state);
+        }
+        self.node = time;
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    #[inline]
+    pub fn body_count(&self) -> usize {
+        self.scene.bodies.count()
+    }
+
+    /// A body.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    #[must_use]
+    #[inline]
+    pub fn body(&self, body: BodyId) -> &Body {
+        &self.scene.bodies.natures[body.index()].body
+    }
+
+    /// State of a body at a time of the present step.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    #[must_use]
+    #[inline]
+    pub fn state_at(&self, body: BodyId, time: Time) -> BodyState {
+        self.scene.bodies.courses[body.index()].state_at(time.since(self.node), self.settings.step)
+    }
+
+    /// Start of the present step.
+    #[must_use]
+    #[inline]
+    pub fn now(&self) -> Time {
+        self.node
+    }
+
+    /// The settings.
+    #[must_use]
+    #[inline]
+    pub fn settings(&self) -> &SteppingSettings {
+        &self.settings
+    }
+
+    /// Counts and extremes since the start.
+    #[must_use]
+    #[inline]
+    pub fn counts(&self) -> Counts {
+        self.books.counts()
+    }
+
+    /// Connectors, in the order of their ids.
+    #[must_use]
+    #[inline]
+    pub fn connectors(&self) -> &[Connector] {
+        &self.scene.ties.all
+    }
+
+    /// Place on its path near which the point of a rail or of a rail's stop is sought; `None` for other connectors.
+    #[must_use]
+    #[inline]
+    pub fn rail_hint(&self, connector: ConnectorId) -> Option<RailHint> {
+        self.scene.ties.memory[connector.index()].hint
+    }
+
+    /// Pairs of bodies that never collide with each other, the lesser id first, sorted.
+    #[must_use]
+    #[inline]
+    pub fn excluded(&self) -> &[(BodyId, BodyId)] {
+        self.scene.pairs.excluded()
+    }
+
+    /// Depth [m] by which two bodies may overlap that the next steps will put apart: a minor part of the lesser one.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    #[must_use]
+    pub fn room_to_sink(&self, bodies: [BodyId; 2]) -> f64 {
+        let reach = bodies.map(|body| self.scene.bodies.natures[body.index()].reach);
+        ROOM * reach[0].min(reach[1])
+    }
+
+    /// Forces of all rows that carry one in the present step.
+    #[must_use]
+    pub fn row_forces(&self) -> Vec<RowForce> {
+        let rows = self.stepper.rows.iter();
+        rows.filter_map(|row| {
+            let (connector, features, force) = match row.source {
+                Source::Contact { pair, contact } => {
+                    let contact = &self.scene.pairs.all()[pair as usize].contacts[contact as usize];
+                    (None, Some(contact.features), contact.forces[0])
+                }
+                Source::Connector { connector, direction } => {
+                    let force = self.scene.ties.memory[connector as usize].forces[direction as usize];
+                    (Some(ConnectorId(connector)), None, force)
+                }
+            };
+            let normal = DVec2::new(row.normal.jacobian[0], row.normal.jacobian[1]);
+            (force != 0.0).then(|| RowForce {
+                bodies: row.bodies,
+                connector,
+                features,
+                point: row.point,
+                normal,
+                force,
+                bouncing: None,
+            })
+        })
+        .collect()
+    }
+
+    /// Writes the energy ledger at a time of the present step over `ledger`, whose buffer is used again.
+    pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
+        self.books.write(time.since(self.node) - 0.5 * self.settings.step, ledger);
+    }
+
+    /// Report of the last impact; empty if there was none.
+    #[must_use]
+    #[inline]
+    pub fn last_impact(&self) -> &ImpactReport {
+        &self.impact
+    }
+
+    /// Contacts that began or ended with the present step.
+    #[must_use]
+    #[inline]
+    pub fn contact_changes(&self) -> &ContactChanges {
+        &self.changes
+    }
+
+    /// Error of the present step, if it could not be made: the system cannot go on from it.
+    #[must_use]
+    #[inline]
+    pub fn failure(&self) -> Option<&AdvanceError> {
+        self.failure.as_ref()
+    }
+
+    /// Force laws, in the order of their indices, those that were removed included.
+    #[must_use]
+    pub fn force_laws(&self) -> &[Arc<dyn ForceLaw>] {
+        &self.scene.laws.all
+    }
+
+    /// True if the force law at an index acts; false if it was removed or is not there.
+    #[must_use]
+    pub fn is_acting(&self, law: usize) -> bool {
+        self.scene.laws.is_on(law)
+    }
+
+    /// True if the force law at an index has a potential; panics if there is no such law.
+    #[must_use]
+    pub fn has_potential(&self, law: usize) -> bool {
+        self.scene.laws.has_potential[law]
+    }
+
+    /// Changes velocities of bodies at a time of the present step, all at once; a new step begins there.
+    ///
+    /// # Errors
+    /// A time or a change that is not finite: nothing is done. An impact that cannot be resolved.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn intervene(&mut self, time: Time, changes: &[VelocityChange]) -> Result<Option<Handled>, AdvanceError> {
+        crate::rigid::check_finite(time, changes)?;
+        self.interrupt(time, |scene, books| {
+            for change in changes {
+                if scene.bodies.is_fixed(change.body) {
+                    continue;
+                }
+                let place = change.body.index();
+                let moving = &mut scene.bodies.movings[place];
+                let motion = |moving: &Moving| [moving.velocity.x, moving.velocity.y, moving.angular_velocity];
+                let before = motion(moving);
+                moving.velocity += change.velocity;
+                moving.angular_velocity += change.angular_velocity;
+                let after = motion(moving);
+                let energy = |motion| scene.bodies.kinetic_energy(place, motion);
+                books.book_intervention(energy(after) - energy(before));
+            }
+        })
+    }
+
+    /// Adds a force law that acts from a time of the present step on.
+    ///
+    /// # Errors
+    /// A time that is not finite, or a law that names a body that is not there: nothing is done. An impact that cannot be resolved.
+    pub fn add_force_law(&mut self, time: Time, law: Arc<dyn ForceLaw>) -> Result<Option<Handled>, AdvanceError> {
+        crate::rigid::check_finite(time, &[])?;
+        crate::rigid::check_bodies_of_force_law(self.force_laws().len(), law.as_ref(), self.body_count())?;
+        self.interrupt(time, |scene, books| {
+            let snapshot = Snapshot::new(time.seconds(), &scene.bodies.movings);
+            let potential = law.potential(&snapshot);
+            books.book_intervention(potential.unwrap_or(0.0));
+            books.add_law();
+            scene.laws.add(law, potential.is_some());
+        })
+    }
+
+    /// Removes the force law at an index from a time of the present step on. Does nothing if the law does not act.
+    ///
+    /// # Errors
+    /// A time that is not finite: nothing is done. An impact that cannot be resolved.
+    pub fn remove_force_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
+        crate::rigid::check_finite(time, &[])?;
+        if !self.is_acting(law) {
+            return Ok(None);
+        }
+        self.interrupt(time, |scene, books| {
+            let snapshot = Snapshot::new(time.seconds(), &scene.bodies.movings);
+            books.book_intervention(-scene.laws.all[law].potential(&snapshot).unwrap_or(0.0));
+            scene.laws.remove(law);
+        })
+    }
+
+    /// Lets something happen at a time, at which a new step begins.
+    fn interrupt(
+        &mut self,
+        time: Time,
+        act: impl FnOnce(&mut Scene, &mut StepBooks),
+    ) -> Result<Option<Handled>, AdvanceError> {
+        let time = time.max(self.node);
+        self.books.begin(time.since(self.node) - 0.5 * self.settings.step);
+        self.go_to(time);
+        act(&mut self.scene, &mut self.books);
+        self.begin(From::Start)?;
+        Ok(None)
+    }
+}
+
+impl EventDriven for SteppingSystem {
+    type Report = Handled;
+    type Error = AdvanceError;
+
+    fn next_event(&self) -> Option<Time> {
+        if self.failure.is_some() { Some(self.node) } else { Some(self.node.plus(self.settings.step)) }
+    }
+
+    /// Begins the next step. One that cannot be made ends the advance: each further call returns the same error.
+    fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
+        self.books.begin(0.0);
+        self.go_to(self.node.plus(self.settings.step));
+        self.begin(From::Before)?;
+        Ok(None)
+    }
+}
+
+/// A system that was saved, which waits for its force laws.
+#[cfg(feature = "save")]
+#[derive(Debug, serde::Deserialize)]
+pub struct SavedStepping {
+    system: SteppingSystem,
+}
+
+#[cfg(feature = "save")]
+impl SavedStepping {
+    /// The system as it was when it was saved, given the force laws that it had: it goes on with the same bits.
+    ///
+    /// # Errors
+    /// Laws that are too many, too few, or name a body that is not there.
+    pub fn with_force_laws(self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<SteppingSystem, PartsError> {
+        let mut system = self.system;
+        for (index, law) in laws.iter().enumerate() {
+            crate::rigid::check_bodies_of_force_law(index, law.as_ref(), system.body_count())?;
+        }
+        system.scene.laws.restore(laws)?;
+        Ok(system)
+    }
+}
