@@ -2,7 +2,8 @@
 
 use crate::stepping::bodies::Bodies;
 use crate::stepping::rows::{Drag, Line, Row};
-use halfgap_contact::{Modes, Problem, ProblemBody, Row as ProblemRow, Solution, Solver, WarmStart};
+use halfgap_collision::BodyId;
+use halfgap_contact::{Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Solution, Solver, WarmStart};
 
 /// Number of times that contacts may give way to the lesser coefficient: each of them does once.
 const GIVING_WAY: usize = 8;
@@ -61,7 +62,7 @@ impl Exact {
         self.problem.clear();
         self.bodies.resize(bodies.count() + 1, None);
         for &place in places {
-            let inertia = bodies.inertia(halfgap_collision::BodyId::from_index(place as usize));
+            let inertia = bodies.inertia(BodyId::from_index(place as usize));
             self.bodies[place as usize] = self.problem.add_body(inertia).ok().map(|body| body.0);
         }
         self.first.clear();
@@ -98,21 +99,23 @@ impl Exact {
         }
     }
 
-    /// Lets the contacts that were held as by static friction, and have reached its bound, slip; false if there is none.
+    /// Lets the contacts that were held as by static friction, and slip, be held back by kinetic friction; false if there are none. Where
+    /// forces are redundant, one at its bound tells nothing: others may hold.
     fn give_way(&mut self, rows: &[Row]) -> bool {
         let mut gives = false;
         for &(row, source, is_roll) in &self.drags {
             let source = &rows[source as usize];
             let Some(drag) = (if is_roll { &source.roll } else { &source.slip }) else { continue };
-            let Drag { coefficient, kinetic, .. } = *drag;
-            let halfgap_contact::RowKind::Friction { normal, coefficient: present } = self.problem.kind(row as usize)
-            else {
+            let row = row as usize;
+            let RowKind::Friction { normal, coefficient } = self.problem.kind(row) else { continue };
+            if drag.kinetic == coefficient {
                 continue;
-            };
-            let force = self.solution.force[row as usize];
-            if kinetic < coefficient && present == coefficient && force != 0.0 && force.abs() >= present * self.solution.force[normal].abs() {
-                let kind = halfgap_contact::RowKind::Friction { normal, coefficient: kinetic };
-                gives |= self.problem.set_kind(row as usize, kind).is_ok();
+            }
+            let [force, pressing] = [row, normal].map(|row| self.solution.force[row]);
+            let slip = self.solution.acceleration[row] * drag.line.weight;
+            if Drag::slips(force, coefficient * pressing, slip) {
+                let kind = RowKind::Friction { normal, coefficient: drag.kinetic };
+                gives |= self.problem.set_kind(row, kind).is_ok();
             }
         }
         gives

@@ -80,6 +80,22 @@ pub(super) struct Drag {
     pub(super) tangential_elasticity: f64,
 }
 
+/// Share of a bound that is rounding [-]: contacts that share a load by redundant forces may all be near their bounds and stick.
+const ROUNDED: f64 = 1e-9;
+
+impl Drag {
+    /// True if it slips, in a solution of its problem with a bound `most` of its impulse: of the way to this bound and the impulse
+    /// `slip` that would stop it, one is rounding.
+    pub(super) fn slips(impulse: f64, most: f64, slip: f64) -> bool {
+        slip.abs() > (most - impulse.abs()).abs().max(ROUNDED * most)
+    }
+
+    /// Impulse [N s] that would stop what slips at given velocities.
+    pub(super) fn stopping(&self, places: [usize; 2], velocities: &[[f64; 3]]) -> f64 {
+        (self.line.rate(places, velocities) + self.line.offset) * self.line.weight
+    }
+}
+
 /// A contact, or a direction of a connector.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -93,7 +109,9 @@ pub(super) struct Row {
     pub(super) is_bilateral: bool,
     /// Gap above its target [m].
     pub(super) gap: f64,
-    /// It carried a force in the last step, or is close enough for one.
+    /// It carried a force in the last step.
+    pub(super) presses: bool,
+    /// It did, or is close enough for one.
     pub(super) touches: bool,
     pub(super) elasticity: f64,
     /// Speed [m/s] of the impact at the start of the step, if there is one.
@@ -106,6 +124,11 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// True if an impact gives back some of the speed that it takes.
+    pub(super) fn rebounds(&self) -> bool {
+        self.elasticity > 0.0 || self.slip.as_ref().is_some_and(|slip| slip.tangential_elasticity > 0.0)
+    }
+
     /// Adds to the velocities what all impulses of the row, times a factor, change.
     pub(super) fn push_all(&self, velocities: &mut [[f64; 3]], factor: f64) {
         let Self { places, normal, slip, roll, .. } = self;

@@ -25,7 +25,7 @@ use crate::stepping::kicks::{Kicks, kicked};
 use crate::stepping::listing::{Lengths, Listing};
 use crate::stepping::pairs::Pairs;
 use crate::stepping::projection::project;
-use crate::stepping::rows::{Row, Source};
+use crate::stepping::rows::{Drag, Row, Source};
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sweeps::sweep;
 use crate::stepping::ties::Ties;
@@ -173,7 +173,7 @@ impl Stepper {
         self.set_off(&mut scene.bodies, island, kick, is_split, books);
         let (_, list) = self.islands.get(island);
         for &row in list {
-            remember(scene, &self.rows[row as usize], kick);
+            remember(scene, &self.rows[row as usize], &self.smooth, kick);
         }
         Ok(())
     }
@@ -244,6 +244,8 @@ impl Stepper {
                 (Some(speed), _) => speed,
                 (None, From::Start) if row.is_bilateral => rate().abs(),
                 (None, From::Start) if row.touches => -rate(),
+                // It has come to touch without being slowed down.
+                (None, From::Before) if row.touches && !row.presses && row.rebounds() => -rate(),
                 _ => 0.0,
             };
             fastest = fastest.max(closing);
@@ -257,8 +259,7 @@ impl Stepper {
         let (_, list) = self.islands.get(island);
         for &index in list {
             let row = &self.rows[index as usize];
-            let rebounds = row.elasticity > 0.0 || row.slip.as_ref().is_some_and(|slip| slip.tangential_elasticity > 0.0);
-            if row.touches || row.normal.impulse <= 0.0 || !rebounds {
+            if row.touches || row.normal.impulse <= 0.0 || !row.rebounds() {
                 continue;
             }
             let kick = row.normal.rate(row.places, &self.kicks.accelerations);
@@ -342,8 +343,8 @@ impl Solving<'_> {
     }
 }
 
-/// Remembers what a row carries in a step whose kick lasts `kick` [s].
-fn remember(scene: &mut Scene, row: &Row, kick: f64) {
+/// Remembers what a row carries at given velocities, in a step whose kick lasts `kick` [s].
+fn remember(scene: &mut Scene, row: &Row, velocities: &[Motion3], kick: f64) {
     let impulses = row.impulses();
     let presses = row.is_bilateral || impulses[0] > 0.0;
     let arrival = row.arrives;
@@ -357,8 +358,10 @@ fn remember(scene: &mut Scene, row: &Row, kick: f64) {
         Source::Contact { pair, contact } => {
             let contact = &mut scene.pairs.all_mut()[pair as usize].contacts[contact as usize];
             (contact.forces, contact.presses, contact.arrival) = (forces, presses, arrival);
-            let sticks = presses
-                && row.slip.as_ref().is_some_and(|slip| slip.line.impulse.abs() < slip.coefficient * impulses[0]);
+            let sticks = presses && row.slip.as_ref().is_some_and(|slip| {
+                let stopping = slip.stopping(row.places, velocities);
+                !Drag::slips(slip.line.impulse, slip.kinetic * impulses[0], stopping)
+            });
             contact.hold = match (sticks, contact.hold) {
                 (false, _) => Hold::Slips,
                 (true, Hold::Slips) => Hold::Here,
