@@ -47,7 +47,7 @@ pub(crate) fn stepping_settings(
         StepLength::ByTolerance => 1.0 / 240.0,
     };
     let length = scales.smallest_radius.unwrap_or(scales.coordinate);
-    let slack = (residual * length).max(rigid.tolerances.accuracy);
+    let slack = (residual.min(1e-4) * length).max(rigid.tolerances.accuracy);
     SteppingSettings { step, residual, slack, restitution, rigid }
 }
 

@@ -56,12 +56,20 @@ impl Course {
     }
 }
 
+/// Bound on the way [m] of any point of a body with a given reach [m] in a displacement, or on its speed [m/s].
+#[inline]
+pub(super) fn farthest(reach: f64, [x, y, turn]: Motion3) -> f64 {
+    DVec2::new(x, y).length() + turn.abs() * reach
+}
+
 /// All bodies; a fixed one has no inverse mass, and moves as it is told.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Bodies {
     pub(super) natures: Vec<Nature>,
     pub(super) courses: Vec<Course>,
+    /// Bound on the way [m] that any point of each body has gone in all.
+    pub(super) ways: Vec<f64>,
     /// Motions at the start of the present step: poses there, velocities as they are known before it.
     pub(super) movings: Vec<Moving>,
 }
@@ -82,7 +90,7 @@ impl Bodies {
             let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
             Nature { reach: body.shape.reach(), body, free_motion, surface }
         });
-        Self { natures: natures.collect(), courses, movings }
+        Self { ways: vec![0.0; courses.len()], natures: natures.collect(), courses, movings }
     }
 
     #[inline]
@@ -118,8 +126,14 @@ impl Bodies {
         self.movings[body] = Moving::from(state);
     }
 
+    /// Adds to the way of a body that of a displacement.
+    pub(super) fn note_way(&mut self, body: usize, displacement: Motion3) {
+        self.ways[body] += farthest(self.natures[body].reach, displacement);
+    }
+
     /// Shifts a body at the start of the present step.
     pub(super) fn shift(&mut self, body: usize, [x, y, turn]: Motion3) {
+        self.note_way(body, [x, y, turn]);
         let (course, moving) = (&mut self.courses[body], &mut self.movings[body]);
         course.position += DVec2::new(x, y);
         course.angle += turn;

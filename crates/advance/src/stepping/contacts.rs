@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 use halfgap_collision::{Moving, Nearness, turned, visit_near_features};
-use halfgap_geometry::{FeatureId, GapSample, Shape};
+use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Pose, Shape};
 
 /// Where a contact sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,11 @@ pub(super) struct Contact {
 }
 
 impl Contact {
+    /// Forgets what it carried.
+    pub(super) fn let_go(&mut self) {
+        (self.forces, self.presses, self.hold, self.arrival) = ([0.0; 3], false, Hold::Slips, None);
+    }
+
     fn new(features: [FeatureId; 2], normal: DVec2) -> Self {
         Self {
             features,
@@ -96,6 +101,36 @@ pub(super) fn find_contacts(
             *heir = Contact { features, hold, ..*old };
         }
     }
+}
+
+/// Measures the contacts of two bodies where they are now; false if one has run off its features, so that they are to be found anew.
+pub(super) fn measure_contacts(
+    [a, b]: [(&Shape, &Moving); 2],
+    overrun: f64,
+    contacts: &[Contact],
+    found: &mut Vec<Found>,
+) -> bool {
+    found.clear();
+    contacts.iter().all(|contact| {
+        let [p, q] = [a.0.feature(contact.features[0]), b.0.feature(contact.features[1])];
+        let Some(sample) = GapSample::measure_unbounded(p, &a.1.pose, q, &b.1.pose) else { return false };
+        found.push(Found { features: contact.features, sample });
+        sample.overrun <= overrun && !has_left_arc(&sample, [(p, &a.1.pose), (q, &b.1.pose)])
+    })
+}
+
+/// True if a contact lies beyond the end of an arc; beyond the normal cone of a corner it goes on for a while.
+fn has_left_arc(sample: &GapSample, sides: [(&Feature, &Pose); 2]) -> bool {
+    let is_arc = |feature: &Feature| match feature {
+        Feature::Round(round) => round.radius != 0.0 && round.range != DirectionRange::Full,
+        Feature::Line(_) => false,
+    };
+    if !(is_arc(sides[0].0) || is_arc(sides[1].0)) {
+        return false;
+    }
+    let mut sample = *sample;
+    sample.find_excess(sides);
+    sample.excess_primary > 0.0 || sample.excess_normal > 0.0
 }
 
 /// Drops what is found twice at one place, by a corner and by the edge beside it: what overlaps more stays, or the earlier.

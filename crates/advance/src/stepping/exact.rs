@@ -3,13 +3,17 @@
 use crate::stepping::bodies::Bodies;
 use crate::stepping::rows::{Drag, Line, Row};
 use halfgap_collision::BodyId;
-use halfgap_contact::{Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Solution, Solver, WarmStart};
+use halfgap_contact::{Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver, WarmStart};
 
 /// Number of times that contacts may give way to the lesser coefficient: each of them does once.
 const GIVING_WAY: usize = 8;
 
+/// Residual up to which a solution is exact, in units of the load [-]: contacts that stick side by side contradict each other by the
+/// rounding of coordinates over the length of a step. With 1e-12 a block on a slope at 1/960 s has no solution.
+const RESIDUAL: f64 = 1e-9;
+
 /// The solver with its buffers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Exact {
     problem: Problem,
@@ -23,6 +27,23 @@ pub(super) struct Exact {
     start: Vec<f64>,
     /// Coefficient of each row of the problem that has friction.
     drags: Vec<(u32, u32, bool)>,
+}
+
+impl Default for Exact {
+    fn default() -> Self {
+        let settings = Settings { natural_residual: RESIDUAL, ..Settings::default() };
+        Self {
+            problem: Problem::default(),
+            solution: Solution::default(),
+            warm: WarmStart::default(),
+            // Settings that differ from the default by a positive number are fine.
+            modes: Modes::new(settings).unwrap_or_default(),
+            bodies: Vec::new(),
+            first: Vec::new(),
+            start: Vec::new(),
+            drags: Vec::new(),
+        }
+    }
 }
 
 impl Exact {

@@ -1,18 +1,20 @@
 //! Lists the rows of a step: contacts that bodies may make within it, and connectors.
 
 use crate::rigid::PairSurface;
-use crate::stepping::bodies::{Bodies, Motion3};
-use crate::stepping::contacts::{Contact, Found, Hold, find_contacts};
+use crate::stepping::bodies::{Bodies, Motion3, farthest};
+use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure_contacts};
 use crate::stepping::pairs::{Pair, Pairs};
 use crate::stepping::rows::{Drag, Line, Row, Source};
 use crate::stepping::ties::Ties;
-use glam::DVec2;
 use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned};
-use halfgap_geometry::{Aabb, GapKind, GapSample};
+use halfgap_geometry::{GapKind, GapSample};
 
 /// Coefficients of the relative turning of two bodies.
 const TURNING: [f64; 6] = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0];
 
+/// Distance beyond the ways of a step up to which contacts are found, as a fraction of the smaller reach [-]: in so many steps more
+/// they are only measured.
+const MARGIN: f64 = 0.05;
 /// Overlap that is looked for, as a multiple of the deepest of a pair in the last step [-]: other features may overlap a little more.
 const DEEPER: f64 = 1.5;
 
@@ -20,8 +22,8 @@ const DEEPER: f64 = 1.5;
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Listing {
-    /// Where each body will be during the step.
-    boxes: Vec<Aabb>,
+    /// Bound on the way [m] of each body in the step.
+    ways: Vec<f64>,
     #[cfg_attr(feature = "save", serde(skip))]
     found: Vec<Found>,
     gone: Vec<Contact>,
@@ -52,43 +54,40 @@ impl Listing {
         ties.follow(bodies);
         list_ties(bodies, ties, lengths, rows);
         let Some(pairs) = pairs else { return };
-        self.boxes.clear();
-        for (place, nature) in bodies.natures.iter().enumerate() {
-            let way = lengths.span * fastest(nature.reach, free[place]);
-            let bounds = nature.body.shape.bounds_at(&bodies.movings[place].pose);
-            self.boxes.push(bounds.grown(way + lengths.target_gap));
-            pairs.cover(bodies, BodyId::from_index(place), self.boxes[place]);
+        self.ways.clear();
+        self.ways.extend(bodies.natures.iter().zip(free).map(|(nature, &free)| lengths.span * farthest(nature.reach, free)));
+        for place in 0..bodies.count() {
+            pairs.cover(bodies, BodyId::from_index(place), self.ways[place]);
         }
         for (index, pair) in pairs.all_mut().iter_mut().enumerate() {
             let places = pair.bodies.map(BodyId::index);
-            if !self.boxes[places[0]].overlaps(&self.boxes[places[1]]) {
-                pair.contacts.clear();
-                pair.deepest = 0.0;
-                continue;
-            }
-            let [p, q] = places.map(|place| free[place]);
-            let reaches = places.map(|place| bodies.natures[place].reach);
-            let relative = fastest(0.0, [p[0] - q[0], p[1] - q[1], 0.0]);
-            let way = lengths.span * (relative + p[2].abs() * reaches[0] + q[2].abs() * reaches[1]);
-            let nearness = Nearness {
-                reach: way + 2.0 * lengths.target_gap,
-                // What overlaps more has done so before, or it would lie behind another edge.
-                depth: way + DEEPER * pair.deepest + lengths.slack,
-                overrun: lengths.slack,
-            };
+            let way = self.ways[places[0]] + self.ways[places[1]];
+            let gone = bodies.ways[places[0]] + bodies.ways[places[1]];
             let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
-            find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
+            let is_known = gone + way <= pair.known_until
+                && measure_contacts(sides, lengths.slack, &pair.contacts, &mut self.found);
+            if !is_known {
+                let reaches = places.map(|place| bodies.natures[place].reach);
+                let reach = way + MARGIN * reaches[0].min(reaches[1]);
+                pair.known_until = gone + reach;
+                let nearness = Nearness {
+                    reach: reach + lengths.target_gap,
+                    // What overlaps more has done so before, or it would lie behind another edge.
+                    depth: way + DEEPER * pair.deepest + lengths.slack,
+                    overrun: lengths.slack,
+                };
+                find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
+            }
             pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
             for (contact, found) in self.found.iter().enumerate() {
-                rows.push(row_of(bodies, pair, (index, contact), &found.sample, lengths));
+                if found.sample.gap <= way + lengths.target_gap {
+                    rows.push(row_of(bodies, pair, (index, contact), &found.sample, lengths));
+                } else {
+                    pair.contacts[contact].let_go();
+                }
             }
         }
     }
-}
-
-/// Speed [m/s] of the fastest point of a body.
-fn fastest(reach: f64, [x, y, spin]: Motion3) -> f64 {
-    DVec2::new(x, y).length() + spin.abs() * reach
 }
 
 /// The row of a contact as it is measured.

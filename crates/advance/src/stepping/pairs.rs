@@ -22,6 +22,8 @@ pub(super) struct Pair {
     pub(super) contacts: Vec<Contact>,
     /// Deepest overlap [m] in the last step; 0 if there was none.
     pub(super) deepest: f64,
+    /// Sum of the ways [m] of both bodies up to which the contacts are all that can touch.
+    pub(super) known_until: f64,
 }
 
 /// All pairs.
@@ -35,14 +37,18 @@ pub(super) struct Pairs {
     /// Pairs that pass through each other, the lesser body first, sorted.
     excluded: Vec<(BodyId, BodyId)>,
     found: Vec<BodyId>,
+    /// Way [m] in all up to which each body stays in its box.
+    boxed_until: Vec<f64>,
+    target_gap: f64,
 }
 
 impl Pairs {
-    pub(super) fn new(count: usize, excluded: Vec<(BodyId, BodyId)>) -> Self {
+    pub(super) fn new(count: usize, excluded: Vec<(BodyId, BodyId)>, target_gap: f64) -> Self {
         let mut excluded: Vec<_> = excluded.into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
         excluded.sort_unstable();
         excluded.dedup();
-        Self { of_body: vec![Vec::new(); count], excluded, ..Self::default() }
+        let (of_body, boxed_until) = (vec![Vec::new(); count], vec![f64::NEG_INFINITY; count]);
+        Self { of_body, boxed_until, excluded, target_gap, ..Self::default() }
     }
 
     pub(super) fn excluded(&self) -> &[(BodyId, BodyId)] {
@@ -62,13 +68,17 @@ impl Pairs {
         &self.of_body[body.index()]
     }
 
-    /// Tells where a body will be during the step; its pairs are found anew if it leaves its box.
-    pub(super) fn cover(&mut self, bodies: &Bodies, body: BodyId, bounds: Aabb) {
-        if self.broad.bounds(body).is_some_and(|boxed| boxed.contains(&bounds)) {
+    /// Tells how far a body will have gone in all by the end of the step, at most `way` [m] of it within the step; its pairs are found
+    /// anew if it can leave its box.
+    pub(super) fn cover(&mut self, bodies: &Bodies, body: BodyId, way: f64) {
+        let gone = bodies.ways[body.index()] + way;
+        if gone <= self.boxed_until[body.index()] {
             return;
         }
-        let margin = MARGIN * bodies.natures[body.index()].reach;
-        let boxed = bounds.grown(margin);
+        let nature = &bodies.natures[body.index()];
+        let margin = way + MARGIN * nature.reach;
+        self.boxed_until[body.index()] = bodies.ways[body.index()] + margin;
+        let boxed = nature.body.shape.bounds_at(&bodies.movings[body.index()].pose).grown(margin + self.target_gap);
         self.broad.set(body, boxed);
         if !bodies.is_fixed(body) {
             self.drop_far(bodies, body, &boxed);
@@ -108,7 +118,7 @@ impl Pairs {
         let natures: [&Nature; 2] = [a, b].map(|body| &bodies.natures[body.index()]);
         let surfaces: [&Surface; 2] = natures.map(|nature| &nature.surface);
         let elasticity = natures[0].body.elasticity.min(natures[1].body.elasticity);
-        self.all.push(Pair { bodies: [a, b], surface: PairSurface::of(surfaces), elasticity, contacts: Vec::new(), deepest: 0.0 });
+        self.all.push(Pair { bodies: [a, b], surface: PairSurface::of(surfaces), elasticity, contacts: Vec::new(), deepest: 0.0, known_until: 0.0 });
         for body in [a, b].into_iter().filter(|&body| !bodies.is_fixed(body)) {
             self.of_body[body.index()].push(place);
         }

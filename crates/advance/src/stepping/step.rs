@@ -27,14 +27,14 @@ use crate::stepping::pairs::Pairs;
 use crate::stepping::projection::project;
 use crate::stepping::rows::{Drag, Row, Source};
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::sweeps::sweep;
+use crate::stepping::sweeps::Sweeps;
 use crate::stepping::ties::Ties;
 use halfgap_contact::ImpactError;
 
-/// Sweeps over an island that is too large, or has too many modes, for an exact solution.
-const MOST_SWEEPS: u32 = 200;
+/// Rounds of sweeps over an island that is too large, or has too many modes, for an exact solution.
+const MOST_ROUNDS: u32 = 100;
 /// Largest number of rows of an island that is solved exactly.
-const LARGEST_EXACT: usize = 200;
+const LARGEST_EXACT: usize = 60;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 const SLOW_STEPS: f64 = 2.0;
 
@@ -57,6 +57,8 @@ pub(super) struct Stepper {
     pub(super) rows: Vec<Row>,
     pub(super) islands: Islands,
     exact: Exact,
+    #[cfg_attr(feature = "save", serde(skip))]
+    sweeps: Sweeps,
     pub(super) impacts: Impacts,
     /// Velocities at the start of the step, as far as they are known; that of the background is behind the last.
     pub(super) node: Vec<Motion3>,
@@ -146,15 +148,18 @@ impl Stepper {
         let is_split = is_struck || from == From::Start;
         let kick = if is_split { 0.5 * span } else { span };
         let (members, list) = self.islands.get(island);
+        let mut residual = 0.0;
         if !list.is_empty() {
             for &row in list {
                 let row = &mut self.rows[row as usize];
-                set_offsets(row, span, settings.slack);
+                set_offsets(row, span, if list.len() <= LARGEST_EXACT { settings.slack } else { 0.0 });
                 let forces = forces_of(scene, row);
                 row.set_impulses(forces.map(|force| force * kick));
             }
             books.note_solve();
-            let solving = Solving { bodies: &scene.bodies, exact: &mut self.exact, residual: settings.residual };
+            residual = settings.residual * largest_kick(&self.rows, list, &self.kicks.accelerations, kick);
+            let solving =
+                Solving { bodies: &scene.bodies, exact: &mut self.exact, sweeps: &mut self.sweeps, residual };
             solving.solve((&mut self.rows, list), members, &mut self.middle);
         }
         for &body in members {
@@ -167,7 +172,8 @@ impl Stepper {
             }
             self.touching.clear();
             self.touching.extend(list.iter().filter(|&&row| self.rows[row as usize].touches));
-            let solving = Solving { bodies: &scene.bodies, exact: &mut self.exact, residual: settings.residual };
+            let solving =
+                Solving { bodies: &scene.bodies, exact: &mut self.exact, sweeps: &mut self.sweeps, residual };
             solving.solve((&mut self.rows, &self.touching), members, &mut self.smooth);
         }
         self.set_off(&mut scene.bodies, island, kick, is_split, books);
@@ -308,7 +314,8 @@ fn set_offsets(row: &mut Row, span: f64, slack: f64) {
     let gap = if row.is_bilateral { row.gap } else { row.gap.max(-slack) };
     line.offset = gap / span + 0.5 * span * line.gamma;
     if let Some(slip) = &mut row.slip {
-        slip.line.offset = slip.off / span + 0.5 * span * slip.line.gamma - slip.running;
+        let off = if slack > 0.0 { slip.off } else { 0.0 };
+        slip.line.offset = off / span + 0.5 * span * slip.line.gamma - slip.running;
     }
 }
 
@@ -326,6 +333,8 @@ fn forces_of(scene: &Scene, row: &Row) -> [f64; 3] {
 struct Solving<'a> {
     bodies: &'a Bodies,
     exact: &'a mut Exact,
+    sweeps: &'a mut Sweeps,
+    /// Rate [m/s] that is as good as none.
     residual: f64,
 }
 
@@ -335,12 +344,18 @@ impl Solving<'_> {
         let is_solved =
             list.len() <= LARGEST_EXACT && self.exact.solve(self.bodies, (rows, list), members, velocities);
         if !is_solved {
-            for &row in list {
-                rows[row as usize].push_all(velocities, 1.0);
-            }
-            sweep(rows, list, velocities, self.residual, MOST_SWEEPS);
+            self.sweeps.solve(self.bodies, (rows, list), members, velocities, (self.residual, MOST_ROUNDS));
         }
     }
+}
+
+/// Largest rate [m/s] at which rows of a list close by one kick.
+fn largest_kick(rows: &[Row], list: &[u32], accelerations: &[Motion3], kick: f64) -> f64 {
+    let kicks = list.iter().map(|&row| {
+        let row = &rows[row as usize];
+        row.normal.rate(row.places, accelerations).abs() * kick
+    });
+    kicks.fold(0.0, f64::max)
 }
 
 /// Remembers what a row carries at given velocities, in a step whose kick lasts `kick` [s].

@@ -50,7 +50,7 @@ impl SteppingSystem {
         let books = StepBooks::new(force_laws.len());
         let bodies = Bodies::new(bodies);
         let laws = ForceLaws::new(force_laws, count, &Snapshot::new(start.seconds(), &bodies.movings));
-        let scene = Scene { bodies, pairs: Pairs::new(count, excluded), ties: Ties::new(connectors), laws };
+        let scene = Scene { bodies, pairs: Pairs::new(count, excluded, settings.rigid.tolerances.target_gap), ties: Ties::new(connectors), laws };
         let mut system = Self {
             settings,
             scene,
@@ -88,6 +88,8 @@ impl SteppingSystem {
         for place in 0..self.scene.bodies.count() {
             let state = self.scene.bodies.courses[place].state_at(since, span);
             self.scene.bodies.place(place, &state);
+            let way = self.scene.bodies.courses[place].middle.map(|velocity| velocity * since);
+            self.scene.bodies.note_way(place, way);
         }
         self.node = time;
     }
