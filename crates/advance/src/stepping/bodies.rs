@@ -5,6 +5,7 @@
 //! between is the parabola that has this velocity there and the acceleration of the step.
 
 use crate::rigid::{BodyPart, FreeMotion, Surface};
+use crate::stepping::rows::Mover;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyId, BodyState, Moving};
 use halfgap_contact::InverseInertia;
@@ -117,6 +118,17 @@ impl Bodies {
         }
         let Body { inverse_mass, inverse_moment, .. } = self.natures[body.index()].body;
         InverseInertia { inverse_mass, inverse_moment }
+    }
+
+    /// A body, or the background, at a velocity.
+    #[inline]
+    pub(super) fn mover(&self, place: usize, velocity: Motion3) -> Mover {
+        match self.natures.get(place) {
+            Some(Nature { body: Body { inverse_mass, inverse_moment, .. }, .. }) => {
+                Mover { velocity, inverse_mass: *inverse_mass, inverse_moment: *inverse_moment }
+            }
+            None => Mover { velocity, ..Mover::default() },
+        }
     }
 
     /// Sets a place anew, with the velocity that is known there.

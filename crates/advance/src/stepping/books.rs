@@ -5,7 +5,7 @@
 
 use crate::rigid::{Counts, Ledger};
 use crate::stepping::bodies::{Motion3, Nature};
-use crate::stepping::rows::{Row, Source};
+use crate::stepping::rows::{Rows, Source};
 
 /// Sums up to the middle of the present step, and powers [W] within it.
 #[derive(Clone, Debug, Default)]
@@ -83,11 +83,13 @@ impl StepBooks {
         self.ledger.interventions += change;
     }
 
-    pub(super) fn note_row(&mut self, row: &Row, target_gap: f64) {
-        match row.source {
-            Source::Contact { .. } if row.touches => self.counts.note_gap(row.gap + target_gap),
-            Source::Connector { .. } if row.is_bilateral => self.counts.note_connector_error(row.gap.abs()),
-            _ => {}
+    pub(super) fn note_gaps(&mut self, rows: &Rows, target_gap: f64) {
+        for row in &rows.all {
+            match row.source {
+                Source::Contact { .. } if row.touches => self.counts.note_gap(row.gap + target_gap),
+                Source::Connector { .. } if row.is_bilateral => self.counts.note_connector_error(row.gap.abs()),
+                _ => {}
+            }
         }
     }
 

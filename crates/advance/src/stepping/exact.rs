@@ -1,9 +1,8 @@
 //! The rows of an island as one problem, solved to rounding by the modes of its contacts.
 
-use crate::stepping::bodies::Bodies;
-use crate::stepping::rows::{Drag, Line, Row};
-use halfgap_collision::BodyId;
-use halfgap_contact::{Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver, WarmStart};
+use crate::stepping::rows::{Line, Mover, Roll, Row};
+use crate::stepping::sweeps::Problem as Island;
+use halfgap_contact::{InverseInertia, Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver, WarmStart};
 
 /// Number of times that contacts may give way to the lesser coefficient: each of them does once.
 const GIVING_WAY: usize = 8;
@@ -25,8 +24,6 @@ pub(super) struct Exact {
     /// Row of the problem for each row of the list: that along the normal, those of slip and roll follow.
     first: Vec<u32>,
     start: Vec<f64>,
-    /// Coefficient of each row of the problem that has friction.
-    drags: Vec<(u32, u32, bool)>,
 }
 
 impl Default for Exact {
@@ -41,31 +38,24 @@ impl Default for Exact {
             bodies: Vec::new(),
             first: Vec::new(),
             start: Vec::new(),
-            drags: Vec::new(),
         }
     }
 }
 
 impl Exact {
-    /// Finds the impulses of the listed rows for velocities without them, beginning with those that the rows have. On success the
-    /// rows have the impulses and the velocities include them; otherwise nothing has changed.
-    pub(super) fn solve(
-        &mut self,
-        bodies: &Bodies,
-        (rows, list): (&mut [Row], &[u32]),
-        places: &[u32],
-        velocities: &mut [[f64; 3]],
-    ) -> bool {
-        self.pose(bodies, (rows, list), places, velocities);
+    /// Finds the impulses of the rows of an island for velocities without them, beginning with those that the rows have. On success
+    /// the rows have the impulses and the velocities include them; otherwise nothing has changed.
+    pub(super) fn solve(&mut self, island: &mut Island<'_>, members: &[u32], (span, slack): (f64, f64)) -> bool {
+        self.pose(island, members, (span, slack));
         let mut is_solved = self.run();
         for _ in 0..GIVING_WAY {
-            if !(is_solved && self.give_way(rows)) {
+            if !(is_solved && self.give_way(island)) {
                 break;
             }
             is_solved = self.run();
         }
         if is_solved {
-            self.take(rows, list, velocities);
+            self.take(island);
         }
         is_solved
     }
@@ -79,39 +69,46 @@ impl Exact {
         is_solved
     }
 
-    fn pose(&mut self, bodies: &Bodies, (rows, list): (&[Row], &[u32]), places: &[u32], velocities: &[[f64; 3]]) {
+    fn pose(&mut self, island: &Island<'_>, members: &[u32], (span, slack): (f64, f64)) {
         self.problem.clear();
-        self.bodies.resize(bodies.count() + 1, None);
-        for &place in places {
-            let inertia = bodies.inertia(BodyId::from_index(place as usize));
-            self.bodies[place as usize] = self.problem.add_body(inertia).ok().map(|body| body.0);
+        self.bodies.resize(island.movers.len(), None);
+        for &place in members {
+            let Mover { inverse_mass, inverse_moment, .. } = island.movers[place as usize];
+            let body = self.problem.add_body(InverseInertia { inverse_mass, inverse_moment });
+            self.bodies[place as usize] = body.ok().map(|body| body.0);
         }
         self.first.clear();
         self.start.clear();
-        self.drags.clear();
-        for &index in list {
-            let row = &rows[index as usize];
+        for &index in island.list {
+            let row = &island.rows[index as usize];
             let normal = self.problem.len();
             self.first.push(normal as u32);
-            let posed = self.posed(row, &row.normal, velocities);
+            // What overlaps a little, or has slipped a little, is brought back by the velocities: that keeps motions smooth.
+            let back = if row.is_bilateral { 0.0 } else { row.gap.clamp(-slack, 0.0) / span };
+            let posed = self.posed(island, row, &row.normal, back);
             self.add(if row.is_bilateral { posed.bilateral() } else { posed }, row.normal.impulse);
-            for (is_roll, drag) in [(false, &row.slip), (true, &row.roll)] {
-                let Some(drag) = drag else { continue };
-                self.drags.push((self.problem.len() as u32, index, is_roll));
-                let posed = self.posed(row, &drag.line, velocities).friction(normal, drag.coefficient);
-                self.add(posed, drag.line.impulse);
+            if row.slip.line.is_some() {
+                let posed = self.posed(island, row, &row.slip.line, row.slip.off / span);
+                self.add(posed.friction(normal, row.slip.bounds[0]), row.slip.line.impulse);
+            }
+            if let Some(roll) = row.roll {
+                let Roll { line, bound, .. } = &island.rolls[roll as usize];
+                self.add(self.posed(island, row, line, 0.0).friction(normal, *bound), line.impulse);
             }
         }
-        for &place in places {
+        for &place in members {
             self.bodies[place as usize] = None;
         }
     }
 
-    fn posed(&self, row: &Row, line: &Line, velocities: &[[f64; 3]]) -> ProblemRow {
-        let sides = row.places.map(|place| self.bodies[place].map(ProblemBody));
-        let offset = line.rate(row.places, velocities) + line.offset;
+    fn posed(&self, island: &Island<'_>, row: &Row, line: &Line, back: f64) -> ProblemRow {
+        let ends = row.ends();
+        let sides = ends.map(|place| self.bodies[place].map(ProblemBody));
+        let [p, q] = ends.map(|place| &island.movers[place].velocity);
+        let offset = line.rate(p, q) + line.offset + back;
         // A row of the island has a body that can move.
-        ProblemRow::between(sides, &line.jacobian, offset).unwrap_or_else(|| ProblemRow::new(ProblemBody(0), [0.0; 3], 0.0))
+        ProblemRow::between(sides, &line.jacobian(), offset)
+            .unwrap_or_else(|| ProblemRow::new(ProblemBody(0), [0.0; 3], 0.0))
     }
 
     fn add(&mut self, row: ProblemRow, impulse: f64) {
@@ -122,34 +119,42 @@ impl Exact {
 
     /// Lets the contacts that were held as by static friction, and slip, be held back by kinetic friction; false if there are none. Where
     /// forces are redundant, one at its bound tells nothing: others may hold.
-    fn give_way(&mut self, rows: &[Row]) -> bool {
+    fn give_way(&mut self, island: &Island<'_>) -> bool {
         let mut gives = false;
-        for &(row, source, is_roll) in &self.drags {
-            let source = &rows[source as usize];
-            let Some(drag) = (if is_roll { &source.roll } else { &source.slip }) else { continue };
-            let row = row as usize;
-            let RowKind::Friction { normal, coefficient } = self.problem.kind(row) else { continue };
-            if drag.kinetic == coefficient {
+        for (place, &index) in island.list.iter().enumerate() {
+            let Row { slip, .. } = &island.rows[index as usize];
+            if slip.bounds[0] == slip.bounds[1] {
                 continue;
             }
+            let row = self.first[place] as usize + 1;
+            let RowKind::Friction { normal, coefficient } = self.problem.kind(row) else { continue };
             let [force, pressing] = [row, normal].map(|row| self.solution.force[row]);
-            let slip = self.solution.acceleration[row] * drag.line.weight;
-            if Drag::slips(force, coefficient * pressing, slip) {
-                let kind = RowKind::Friction { normal, coefficient: drag.kinetic };
+            let stopping = self.solution.acceleration[row] * slip.line.weight;
+            if coefficient != slip.bounds[1] && Line::slips(force, coefficient * pressing, stopping) {
+                let kind = RowKind::Friction { normal, coefficient: slip.bounds[1] };
                 gives |= self.problem.set_kind(row, kind).is_ok();
             }
         }
         gives
     }
 
-    fn take(&self, rows: &mut [Row], list: &[u32], velocities: &mut [[f64; 3]]) {
-        for (&index, &first) in list.iter().zip(&self.first) {
-            let row = &mut rows[index as usize];
-            let first = first as usize;
-            let slip = if row.slip.is_some() { self.solution.force[first + 1] } else { 0.0 };
-            let roll = if row.roll.is_some() { self.solution.force[first + 1 + usize::from(row.slip.is_some())] } else { 0.0 };
-            row.set_impulses([self.solution.force[first], slip, roll]);
-            row.push_all(velocities, 1.0);
+    fn take(&self, island: &mut Island<'_>) {
+        for (&index, &first) in island.list.iter().zip(&self.first) {
+            let row = &mut island.rows[index as usize];
+            let mut forces = self.solution.force[first as usize..].iter().copied();
+            row.normal.impulse = forces.next().unwrap_or(0.0);
+            if row.slip.line.is_some() {
+                row.slip.line.impulse = forces.next().unwrap_or(0.0);
+            }
+            row.push_impulses(island.movers);
+            if let Some(roll) = row.roll {
+                let line = &mut island.rolls[roll as usize].line;
+                line.impulse = forces.next().unwrap_or(0.0);
+                let [a, b] = row.ends();
+                let (mut p, mut q) = (island.movers[a], island.movers[b]);
+                line.push(&mut p, &mut q, line.impulse);
+                (island.movers[a], island.movers[b]) = (p, q);
+            }
         }
     }
 }

@@ -15,11 +15,6 @@ pub(super) struct Impacts {
 }
 
 impl Impacts {
-    /// Number of rows of the last impact.
-    pub(super) fn listed(&self) -> &[u32] {
-        &self.listed
-    }
-
     /// Changes the velocities of an island, in which something closes faster than `slow`, by the impact law.
     pub(super) fn resolve(
         &mut self,
@@ -31,7 +26,7 @@ impl Impacts {
     ) -> Result<(), ImpactError> {
         self.listed.clear();
         let rate_of = |row: &Row, velocities: &[Motion3]| {
-            let rate = row.normal.rate(row.places, velocities);
+            let rate = row.rate(velocities);
             row.strikes.map_or(rate, |speed| rate.min(-speed))
         };
         let takes_part = |&&row: &&u32| {
@@ -41,7 +36,8 @@ impl Impacts {
         self.listed.extend(list.iter().filter(takes_part));
         let made = self.listed.iter().map(|&row| {
             let row = &rows[row as usize];
-            let inertia = row.bodies.map(|body| bodies.inertia(body));
+            let ids = row.bodies(bodies.count());
+            let inertia = ids.map(|body| bodies.inertia(body));
             let kind = if row.is_bilateral { RowKind::Bilateral } else { RowKind::Unilateral };
             let rate = rate_of(row, velocities);
             CollisionRow {
@@ -49,32 +45,32 @@ impl Impacts {
                 velocity_tol: slow,
                 kind,
                 was_active: row.strikes.is_none(),
-                ..CollisionRow::new(row.bodies, row.normal.jacobian, inertia, rate)
+                ..CollisionRow::new(ids, row.normal.jacobian(), inertia, rate)
             }
         });
         self.impact.set_rows(made);
         self.impact.set_restitution(settings.restitution);
         for (place, &row) in self.listed.iter().enumerate() {
             let row = &rows[row as usize];
-            let Some(slip) = row.slip.as_ref() else { continue };
-            let inertia = row.bodies.map(|body| bodies.inertia(body));
-            let rate = slip.line.rate(row.places, velocities) - slip.running;
+            if !row.slip.line.is_some() {
+                continue;
+            }
+            let inertia = row.bodies(bodies.count()).map(|body| bodies.inertia(body));
+            let rate = row.slip_rate(velocities) - row.slip.running;
             let friction = FrictionRow {
-                tangential_elasticity: slip.tangential_elasticity,
-                ..FrictionRow::new(slip.line.jacobian, inertia, rate, slip.kinetic)
+                tangential_elasticity: row.slip.elasticity,
+                ..FrictionRow::new(row.slip.line.jacobian(), inertia, rate, row.slip.bounds[1])
             };
             self.impact.set_friction(place, friction);
         }
         settings.rigid.impact_law.resolve(&mut self.impact, settings.rigid.order, index)?;
         for (place, &row) in self.listed.iter().enumerate() {
             let row = &rows[row as usize];
-            let impulse = self.impact.impulses()[place];
-            if impulse != 0.0 {
-                row.normal.push(row.places, velocities, impulse);
-            }
-            if let Some(slip) = &row.slip {
-                slip.line.push(row.places, velocities, self.impact.friction_impulse(place));
-            }
+            let [a, b] = row.ends();
+            let [mut p, mut q] = row.ends().map(|place| bodies.mover(place, velocities[place]));
+            row.normal.push(&mut p, &mut q, self.impact.impulses()[place]);
+            row.slip.line.push(&mut p, &mut q, self.impact.friction_impulse(place));
+            (velocities[a], velocities[b]) = (p.velocity, q.velocity);
         }
         Ok(())
     }

@@ -26,7 +26,7 @@ impl Islands {
         self.forest.reset(count);
         let moves = |place: usize| place < count && !bodies.natures[place].body.is_fixed();
         for row in rows {
-            let [a, b] = row.places;
+            let [a, b] = row.ends();
             if moves(a) && moves(b) {
                 self.forest.join(a, b);
             }
@@ -44,7 +44,7 @@ impl Islands {
             self.next[self.island_of[root] as usize][0] += 1;
         }
         let of_row = |row: &Row| {
-            let [a, b] = row.places;
+            let [a, b] = row.ends();
             if moves(a) { a } else { b }
         };
         for row in rows {

@@ -48,6 +48,12 @@ impl Kicks {
         }
     }
 
+    /// Largest acceleration of a centre of mass [m/s^2].
+    pub(super) fn fastest(&self) -> f64 {
+        let squares = self.accelerations.iter().map(|[x, y, _]| x * x + y * y);
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
     /// Power [W] of each law without potential on a body, if it is among some, at the velocities that `velocity` tells.
     pub(super) fn powers(
         &self,

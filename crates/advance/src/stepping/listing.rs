@@ -4,7 +4,7 @@ use crate::rigid::PairSurface;
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure_contacts};
 use crate::stepping::pairs::{Pair, Pairs};
-use crate::stepping::rows::{Drag, Line, Row, Source};
+use crate::stepping::rows::{Line, Roll, Row, Rows, Slip, Source};
 use crate::stepping::ties::Ties;
 use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned};
 use halfgap_geometry::{GapKind, GapSample};
@@ -48,7 +48,7 @@ impl Listing {
         (pairs, ties): (Option<&mut Pairs>, &mut Ties),
         free: &[Motion3],
         lengths: Lengths,
-        rows: &mut Vec<Row>,
+        rows: &mut Rows,
     ) {
         rows.clear();
         ties.follow(bodies);
@@ -81,7 +81,7 @@ impl Listing {
             pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
             for (contact, found) in self.found.iter().enumerate() {
                 if found.sample.gap <= way + lengths.target_gap {
-                    rows.push(row_of(bodies, pair, (index, contact), &found.sample, lengths));
+                    add_contact(bodies, pair, (index, contact), &found.sample, lengths, rows);
                 } else {
                     pair.contacts[contact].let_go();
                 }
@@ -90,14 +90,15 @@ impl Listing {
     }
 }
 
-/// The row of a contact as it is measured.
-fn row_of(
+/// Adds the row of a contact as it is measured.
+fn add_contact(
     bodies: &Bodies,
     pair: &mut Pair,
     (index, place): (usize, usize),
     sample: &GapSample,
     lengths: Lengths,
-) -> Row {
+    rows: &mut Rows,
+) {
     let Pair { bodies: of_pair, surface, elasticity, contacts, .. } = pair;
     let contact = &mut contacts[place];
     let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
@@ -105,40 +106,54 @@ fn row_of(
     let [primary, normal] = ids.map(|body| &bodies.movings[body.index()]);
     let inertia = ids.map(|body| bodies.inertia(body));
     let kinematics = GapKinematics::of(sample, primary, normal);
-    let gap = sample.gap - lengths.target_gap;
+    let Lengths { span, target_gap, slack } = lengths;
+    let gap = sample.gap - target_gap;
     let mut row = Row {
-        source: Source::Contact { pair: index as u32, contact: place as u32 },
-        bodies: ids,
-        places: ids.map(BodyId::index),
-        point: sample.point_primary,
+        places: ids.map(|body| body.0),
         is_bilateral: false,
-        gap,
         presses: contact.presses,
-        touches: contact.presses || gap <= lengths.slack,
+        touches: contact.presses || gap <= slack,
+        roll: None,
+        normal: Line::new(kinematics.jacobian, inertia, gap.max(0.0) / span + 0.5 * span * kinematics.gamma),
+        slip: Slip::default(),
+        gap,
+        gamma: kinematics.gamma,
         elasticity: *elasticity,
         strikes: contact.arrival,
         arrives: None,
-        normal: Line::new(kinematics.jacobian, inertia, kinematics.gamma),
-        slip: None,
-        roll: None,
+        point: sample.point_primary,
+        source: Source::Contact { pair: index as u32, contact: place as u32 },
     };
+    row.normal.impulse = span * contact.forces[0];
     if surface.has_friction() {
-        let features = sides.map(|side: usize| bodies.natures[of_pair[side].index()].body.shape.feature(contact.features[side]));
+        let features =
+            sides.map(|side: usize| bodies.natures[of_pair[side].index()].body.shape.feature(contact.features[side]));
         let radii = features.map(|feature| feature.radius());
-        let touch = Touch { sample, radii, bodies: [primary, normal], kept_gap: lengths.target_gap };
+        let touch = Touch { sample, radii, bodies: [primary, normal], kept_gap: target_gap };
         let speeds = sides.map(|side: usize| surface.speeds[side]);
         let tangent = TangentRow::of(&touch, &kinematics, speeds);
-        row.slip = Some(Drag {
-            line: Line::new(tangent.jacobian, inertia, tangent.gamma),
-            off: way_off(contact, &touch, lengths.span * (speeds[0] + speeds[1])),
-            running: speeds[0] + speeds[1],
-            tangential_elasticity: surface.tangential_elasticity,
-            coefficient: if contact.hold == Hold::Slips { surface.kinetic } else { surface.sticking },
-            kinetic: surface.kinetic,
-        });
-        row.roll = rolling(surface, radii, inertia);
+        let running = speeds[0] + speeds[1];
+        let sticking = if contact.hold == Hold::Slips { surface.kinetic } else { surface.sticking };
+        row.slip = Slip {
+            line: Line::new(tangent.jacobian, inertia, 0.5 * span * tangent.gamma - running),
+            bounds: [sticking, surface.kinetic],
+            off: way_off(contact, &touch, span * running),
+            running,
+            elasticity: surface.tangential_elasticity,
+        };
+        row.slip.line.impulse = span * contact.forces[1];
+        if let Some(bound) = rolling_bound(surface, radii) {
+            row.roll = Some(rows.rolls.len() as u32);
+            let mut line = Line::new(TURNING, inertia, 0.0);
+            line.impulse = span * contact.forces[2];
+            rows.rolls.push(Roll { row: rows.all.len() as u32, line, bound });
+        }
     }
-    row
+    // It has come to touch without having been slowed down before.
+    if row.strikes.is_none() && row.touches && !row.presses && row.rebounds() && kinematics.rate < 0.0 {
+        row.strikes = Some(-kinematics.rate);
+    }
+    rows.push(row);
 }
 
 /// Way [m] along the surface from where a contact sticks. Where surfaces run, the place at which it sticks runs along by `run` [m]
@@ -156,23 +171,17 @@ fn way_off(contact: &mut Contact, touch: &Touch<'_>, run: f64) -> f64 {
     now - at
 }
 
-/// The row against rolling, where there is a radius to roll on.
-fn rolling(
-    surface: &PairSurface,
-    radii: [Option<f64>; 2],
-    inertia: [halfgap_contact::InverseInertia; 2],
-) -> Option<Drag> {
-    let curvature = radii.iter().flatten().map(|&radius| if radius == 0.0 { f64::INFINITY } else { 1.0 / radius });
-    let radius = 1.0 / curvature.sum::<f64>().abs();
-    if surface.rolling == 0.0 || radius == 0.0 || !radius.is_finite() {
+/// Bound of the impulse against rolling [m], as a multiple of that along the normal; `None` where there is no radius to roll on.
+fn rolling_bound(surface: &PairSurface, radii: [Option<f64>; 2]) -> Option<f64> {
+    if surface.rolling == 0.0 || radii.contains(&Some(0.0)) {
         return None;
     }
-    let coefficient = surface.rolling * radius;
-    let line = Line::new(TURNING, inertia, 0.0);
-    Some(Drag { line, off: 0.0, running: 0.0, tangential_elasticity: 0.0, coefficient, kinetic: coefficient })
+    let curvature: f64 = radii.iter().flatten().map(|&radius| 1.0 / radius).sum();
+    (curvature != 0.0).then(|| surface.rolling / curvature.abs())
 }
 
-fn list_ties(bodies: &Bodies, ties: &Ties, lengths: Lengths, rows: &mut Vec<Row>) {
+fn list_ties(bodies: &Bodies, ties: &Ties, lengths: Lengths, rows: &mut Rows) {
+    let Lengths { span, slack, .. } = lengths;
     for (index, connector) in ties.all.iter().enumerate() {
         let tie = &ties.memory[index];
         let ids = connector.bodies();
@@ -180,24 +189,29 @@ fn list_ties(bodies: &Bodies, ties: &Ties, lengths: Lengths, rows: &mut Vec<Row>
             continue;
         }
         let inertia = ids.map(|body| bodies.inertia(body));
+        let is_bilateral = connector.is_bilateral();
         for direction in 0..connector.row_count() {
             let sample = ties.measure(bodies, index, direction);
-            rows.push(Row {
-                source: Source::Connector { connector: index as u32, direction: direction as u32 },
-                bodies: ids,
-                places: ids.map(|body| if body.is_world() { bodies.count() } else { body.index() }),
-                point: sample.point_a,
-                is_bilateral: connector.is_bilateral(),
-                gap: sample.gap,
+            let gap = if is_bilateral { sample.gap } else { sample.gap.max(0.0) };
+            let offset = gap / span + 0.5 * span * sample.kinematics.gamma;
+            let mut row = Row {
+                places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
+                is_bilateral,
                 presses: tie.presses,
-                touches: connector.is_bilateral() || tie.presses || sample.gap <= lengths.slack,
+                touches: is_bilateral || tie.presses || sample.gap <= slack,
+                roll: None,
+                normal: Line::new(sample.kinematics.jacobian, inertia, offset),
+                slip: Slip::default(),
+                gap: sample.gap,
+                gamma: sample.kinematics.gamma,
                 elasticity: connector.elasticity,
                 strikes: tie.arrival,
                 arrives: None,
-                normal: Line::new(sample.kinematics.jacobian, inertia, sample.kinematics.gamma),
-                slip: None,
-                roll: None,
-            });
+                point: sample.point_a,
+                source: Source::Connector { connector: index as u32, direction: direction as u32 },
+            };
+            row.normal.impulse = span * tie.forces[direction];
+            rows.push(row);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Displacements that bring bodies which overlap, and connectors that have come apart, back to their gaps: the least in the metric of
 //! the masses, found by sweeps.
 
-use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::bodies::Bodies;
 use crate::stepping::books::StepBooks;
-use crate::stepping::rows::Row;
+use crate::stepping::rows::{Mover, Row};
 
 /// Largest number of sweeps: what they leave is brought back in the next step.
 const MOST_SWEEPS: usize = 10;
@@ -15,29 +15,28 @@ pub(super) fn project(
     bodies: &mut Bodies,
     rows: &mut [Row],
     slack: f64,
-    shifts: &mut Vec<Motion3>,
+    shifts: &mut Vec<Mover>,
     books: &mut StepBooks,
 ) -> bool {
-    let is_off = |row: &Row| if row.is_bilateral { row.gap.abs() > slack } else { row.gap < -slack };
-    if !rows.iter().any(is_off) {
-        return false;
-    }
     shifts.clear();
-    shifts.resize(bodies.count() + 1, [0.0; 3]);
+    shifts.extend((0..=bodies.count()).map(|place| bodies.mover(place, [0.0; 3])));
     for row in rows.iter_mut() {
-        row.normal.impulse = 0.0;
+        row.normal.before = 0.0;
     }
     for _ in 0..MOST_SWEEPS {
         let mut most = 0.0_f64;
         for row in rows.iter_mut() {
+            let [a, b] = row.ends();
+            let (mut p, mut q) = (shifts[a], shifts[b]);
             let line = &mut row.normal;
-            let lacking = line.rate(row.places, shifts) + row.gap;
-            let wanted = line.impulse - lacking * line.weight;
-            let change = if row.is_bilateral { wanted } else { wanted.max(0.0) } - line.impulse;
+            let lacking = line.rate(&p.velocity, &q.velocity) + row.gap;
+            let wanted = line.before - lacking * line.weight;
+            let change = if row.is_bilateral { wanted } else { wanted.max(0.0) } - line.before;
             if change != 0.0 {
-                line.push(row.places, shifts, change);
-                line.impulse += change;
+                line.push(&mut p, &mut q, change);
+                line.before += change;
                 most = most.max(change.abs() / line.weight);
+                (shifts[a], shifts[b]) = (p, q);
             }
         }
         if most <= ENOUGH * slack {
@@ -45,13 +44,12 @@ pub(super) fn project(
         }
     }
     for row in rows.iter_mut() {
-        row.gap += row.normal.rate(row.places, shifts);
-        if let Some(slip) = &mut row.slip {
-            slip.off += slip.line.rate(row.places, shifts);
-        }
+        let [p, q] = row.ends().map(|place| &shifts[place].velocity);
+        row.gap += row.normal.rate(p, q);
+        row.slip.off += row.slip.line.rate(p, q);
     }
     for place in 0..bodies.count() {
-        let shift = shifts[place];
+        let shift = shifts[place].velocity;
         if shift != [0.0; 3] {
             let nature = &bodies.natures[place];
             let acceleration = nature.free_motion.acceleration;

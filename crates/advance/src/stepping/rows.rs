@@ -1,55 +1,101 @@
 //! The rows of a step: what contacts and connectors ask of the velocities with which bodies go through it.
 //!
-//! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and has no response.
+//! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it.
 
+use crate::stepping::bodies::Motion3;
 use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_contact::InverseInertia;
 
-/// One direction in which a row acts.
+/// Share of a bound that is rounding [-]: contacts that share a load by redundant forces may all be near their bounds and stick.
+const ROUNDED: f64 = 1e-9;
+
+/// A velocity that is looked for, and what an impulse and its moment change of it: nothing of a body that cannot move.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+#[repr(align(64))]
+pub(super) struct Mover {
+    pub(super) velocity: Motion3,
+    pub(super) inverse_mass: f64,
+    pub(super) inverse_moment: f64,
+}
+
+/// One direction in which a row acts: J = [x, y, a, -x, -y, b].
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Line {
-    /// J: coefficients of the velocities of both bodies.
-    pub(super) jacobian: [f64; 6],
-    /// J M^-1: change of these velocities by a unit of impulse.
-    pub(super) response: [f64; 6],
-    /// 1/(J M^-1 J^T), the impulse that changes the rate by one [kg].
+    x: f64,
+    y: f64,
+    a: f64,
+    b: f64,
+    /// 1/(J M^-1 J^T), the impulse that changes the rate by one [kg]; 0 where there is no row.
     pub(super) weight: f64,
-    /// Acceleration [m/s^2] when no body accelerates.
-    pub(super) gamma: f64,
     /// What is added to the rate to get what is asked of [m/s].
     pub(super) offset: f64,
     /// Impulse [N s] of the problem that is being solved.
     pub(super) impulse: f64,
+    /// Impulse before a round of sweeps, and the direction along which it goes on after it.
+    pub(super) before: f64,
+    pub(super) conjugate: f64,
 }
 
 impl Line {
-    pub(super) fn new(jacobian: [f64; 6], [a, b]: [InverseInertia; 2], gamma: f64) -> Self {
-        let inverse =
-            [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
-        let response: [f64; 6] = std::array::from_fn(|k| jacobian[k] * inverse[k]);
-        let compliance: f64 = (0..6).map(|k| jacobian[k] * response[k]).sum();
+    pub(super) fn new(jacobian: [f64; 6], [p, q]: [InverseInertia; 2], offset: f64) -> Self {
+        let [x, y, a, _, _, b] = jacobian;
+        let compliance = (p.inverse_mass + q.inverse_mass) * (x * x + y * y)
+            + (p.inverse_moment * a * a + q.inverse_moment * b * b);
         let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
-        Self { jacobian, response, weight, gamma, offset: 0.0, impulse: 0.0 }
+        Self { x, y, a, b, weight, offset, ..Self::default() }
     }
 
-    /// J v [m/s].
+    /// True if there is such a row.
     #[inline]
-    pub(super) fn rate(&self, places: [usize; 2], velocities: &[[f64; 3]]) -> f64 {
-        let [[x, y, turn], [u, v, spin]] = places.map(|place| velocities[place]);
-        let j = &self.jacobian;
-        (j[0] * x + j[1] * y + j[2] * turn) + (j[3] * u + j[4] * v + j[5] * spin)
+    pub(super) fn is_some(&self) -> bool {
+        self.weight > 0.0
+    }
+
+    /// J.
+    pub(super) fn jacobian(&self) -> [f64; 6] {
+        [self.x, self.y, self.a, -self.x, -self.y, self.b]
+    }
+
+    /// J v [m/s] of two velocities.
+    #[inline(always)]
+    pub(super) fn rate(&self, p: &Motion3, q: &Motion3) -> f64 {
+        (self.x * (p[0] - q[0]) + self.y * (p[1] - q[1])) + (self.a * p[2] + self.b * q[2])
     }
 
     /// Adds what an impulse changes to the velocities.
-    #[inline]
-    pub(super) fn push(&self, places: [usize; 2], velocities: &mut [[f64; 3]], impulse: f64) {
-        for (side, place) in places.into_iter().enumerate() {
-            for (k, velocity) in velocities[place].iter_mut().enumerate() {
-                *velocity += self.response[3 * side + k] * impulse;
-            }
-        }
+    #[inline(always)]
+    pub(super) fn push(&self, p: &mut Mover, q: &mut Mover, impulse: f64) {
+        let (x, y) = (self.x * impulse, self.y * impulse);
+        p.velocity[0] += p.inverse_mass * x;
+        p.velocity[1] += p.inverse_mass * y;
+        p.velocity[2] += p.inverse_moment * self.a * impulse;
+        q.velocity[0] -= q.inverse_mass * x;
+        q.velocity[1] -= q.inverse_mass * y;
+        q.velocity[2] += q.inverse_moment * self.b * impulse;
+    }
+
+    /// Changes the impulse, and the velocities by it; returns by how much.
+    #[inline(always)]
+    pub(super) fn set(&mut self, p: &mut Mover, q: &mut Mover, impulse: f64) -> f64 {
+        let change = impulse - self.impulse;
+        self.push(p, q, change);
+        self.impulse = impulse;
+        change.abs()
+    }
+
+    /// Impulse at which the row would do what is asked [N s].
+    #[inline(always)]
+    pub(super) fn wanted(&self, p: &Mover, q: &Mover) -> f64 {
+        self.impulse - (self.rate(&p.velocity, &q.velocity) + self.offset) * self.weight
+    }
+
+    /// True if a row with a bound `most` of its impulse slips, in a solution of its problem, where the impulse `stopping` would stop
+    /// it: of this and the way to the bound, one is rounding.
+    pub(super) fn slips(impulse: f64, most: f64, stopping: f64) -> bool {
+        stopping.abs() > (most - impulse.abs()).abs().max(ROUNDED * most)
     }
 }
 
@@ -63,95 +109,133 @@ pub(super) enum Source {
     Connector { connector: u32, direction: u32 },
 }
 
-/// Friction along a surface, or against rolling.
-#[derive(Clone, Copy, Debug)]
+/// Friction along the surfaces of a contact; no row without friction.
+#[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Drag {
+pub(super) struct Slip {
     pub(super) line: Line,
-    /// Bound of the impulse, as a multiple of that along the normal: [-], or [m] against rolling.
-    pub(super) coefficient: f64,
-    /// The bound once it gives way.
-    pub(super) kinetic: f64,
+    /// Bound of the impulse as a multiple of that along the normal [-]: until it gives way, and then.
+    pub(super) bounds: [f64; 2],
     /// Way [m] along the surface from where it sticks; 0 where it does not.
     pub(super) off: f64,
     /// Sum of the speeds of the surfaces [m/s]: the rate less this is the slip.
     pub(super) running: f64,
     /// Share of the slip that an impact gives back [-].
-    pub(super) tangential_elasticity: f64,
+    pub(super) elasticity: f64,
 }
 
-/// Share of a bound that is rounding [-]: contacts that share a load by redundant forces may all be near their bounds and stick.
-const ROUNDED: f64 = 1e-9;
-
-impl Drag {
-    /// True if it slips, in a solution of its problem with a bound `most` of its impulse: of the way to this bound and the impulse
-    /// `slip` that would stop it, one is rounding.
-    pub(super) fn slips(impulse: f64, most: f64, slip: f64) -> bool {
-        slip.abs() > (most - impulse.abs()).abs().max(ROUNDED * most)
-    }
-
-    /// Impulse [N s] that would stop what slips at given velocities.
-    pub(super) fn stopping(&self, places: [usize; 2], velocities: &[[f64; 3]]) -> f64 {
-        (self.line.rate(places, velocities) + self.line.offset) * self.line.weight
-    }
+/// Resistance of a contact against rolling.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Roll {
+    /// The row of the contact.
+    pub(super) row: u32,
+    pub(super) line: Line,
+    /// Bound of the impulse as a multiple of that along the normal [m].
+    pub(super) bound: f64,
 }
 
 /// A contact, or a direction of a connector.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Row {
-    pub(super) source: Source,
-    pub(super) bodies: [BodyId; 2],
-    pub(super) places: [usize; 2],
-    /// Point of the primary body at which the row acts [m].
-    pub(super) point: DVec2,
+    pub(super) places: [u32; 2],
     /// The rate may neither be negative nor positive.
     pub(super) is_bilateral: bool,
-    /// Gap above its target [m].
-    pub(super) gap: f64,
     /// It carried a force in the last step.
     pub(super) presses: bool,
     /// It did, or is close enough for one.
     pub(super) touches: bool,
+    /// Place of its resistance against rolling, if it has one.
+    pub(super) roll: Option<u32>,
+    pub(super) normal: Line,
+    pub(super) slip: Slip,
+    /// Gap above its target [m], and its acceleration when no body accelerates [m/s^2].
+    pub(super) gap: f64,
+    pub(super) gamma: f64,
     pub(super) elasticity: f64,
     /// Speed [m/s] of the impact at the start of the step, if there is one.
     pub(super) strikes: Option<f64>,
     /// Speed [m/s] of the impact at its end, if there is one.
     pub(super) arrives: Option<f64>,
-    pub(super) normal: Line,
-    pub(super) slip: Option<Drag>,
-    pub(super) roll: Option<Drag>,
+    /// Point of the primary body at which the row acts [m].
+    pub(super) point: DVec2,
+    pub(super) source: Source,
 }
 
 impl Row {
+    /// The places of its bodies.
+    #[inline(always)]
+    pub(super) fn ends(&self) -> [usize; 2] {
+        self.places.map(|place| place as usize)
+    }
+
+    /// Its bodies, among so many.
+    pub(super) fn bodies(&self, count: usize) -> [BodyId; 2] {
+        self.places.map(|place| if place as usize == count { BodyId::WORLD } else { BodyId(place) })
+    }
+
     /// True if an impact gives back some of the speed that it takes.
+    #[inline]
     pub(super) fn rebounds(&self) -> bool {
-        self.elasticity > 0.0 || self.slip.as_ref().is_some_and(|slip| slip.tangential_elasticity > 0.0)
+        self.elasticity > 0.0 || self.slip.elasticity > 0.0
     }
 
-    /// Adds to the velocities what all impulses of the row, times a factor, change.
-    pub(super) fn push_all(&self, velocities: &mut [[f64; 3]], factor: f64) {
-        let Self { places, normal, slip, roll, .. } = self;
-        for line in [Some(normal), slip.as_ref().map(|drag| &drag.line), roll.as_ref().map(|drag| &drag.line)] {
-            if let Some(line) = line.filter(|line| line.impulse != 0.0) {
-                line.push(*places, velocities, factor * line.impulse);
-            }
+    /// J v [m/s] along the normal.
+    #[inline]
+    pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
+        let [a, b] = self.ends();
+        self.normal.rate(&velocities[a], &velocities[b])
+    }
+
+    /// J v [m/s] along the surface.
+    pub(super) fn slip_rate(&self, velocities: &[Motion3]) -> f64 {
+        let [a, b] = self.ends();
+        self.slip.line.rate(&velocities[a], &velocities[b])
+    }
+
+    /// Adds to the velocities what the impulses of the row change.
+    #[inline]
+    pub(super) fn push_impulses(&self, movers: &mut [Mover]) {
+        let [a, b] = self.ends();
+        let (mut p, mut q) = (movers[a], movers[b]);
+        self.normal.push(&mut p, &mut q, self.normal.impulse);
+        if self.slip.line.is_some() {
+            self.slip.line.push(&mut p, &mut q, self.slip.line.impulse);
         }
+        (movers[a], movers[b]) = (p, q);
+    }
+}
+
+/// All rows of a step.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Rows {
+    pub(super) all: Vec<Row>,
+    pub(super) rolls: Vec<Roll>,
+    /// Deepest overlap, and largest error of a connector [m].
+    pub(super) deepest: f64,
+    pub(super) farthest_off: f64,
+    /// Some contact has struck, some rebounds.
+    pub(super) strikes: bool,
+    pub(super) rebounds: bool,
+}
+
+impl Rows {
+    pub(super) fn clear(&mut self) {
+        self.all.clear();
+        self.rolls.clear();
+        (self.deepest, self.farthest_off, self.strikes, self.rebounds) = (0.0, 0.0, false, false);
     }
 
-    /// Impulses along the normal, along the surface, and against rolling.
-    pub(super) fn impulses(&self) -> [f64; 3] {
-        let of = |drag: &Option<Drag>| drag.as_ref().map_or(0.0, |drag| drag.line.impulse);
-        [self.normal.impulse, of(&self.slip), of(&self.roll)]
-    }
-
-    /// Sets the impulses along the normal, along the surface, and against rolling.
-    pub(super) fn set_impulses(&mut self, [normal, slip, roll]: [f64; 3]) {
-        self.normal.impulse = normal;
-        for (drag, impulse) in [(&mut self.slip, slip), (&mut self.roll, roll)] {
-            if let Some(drag) = drag {
-                drag.line.impulse = impulse;
-            }
+    pub(super) fn push(&mut self, row: Row) {
+        if row.is_bilateral {
+            self.farthest_off = self.farthest_off.max(row.gap.abs());
+        } else {
+            self.deepest = self.deepest.max(-row.gap);
         }
+        self.strikes |= row.strikes.is_some();
+        self.rebounds |= row.rebounds();
+        self.all.push(row);
     }
 }

@@ -25,9 +25,9 @@ use crate::stepping::kicks::{Kicks, kicked};
 use crate::stepping::listing::{Lengths, Listing};
 use crate::stepping::pairs::Pairs;
 use crate::stepping::projection::project;
-use crate::stepping::rows::{Drag, Row, Source};
+use crate::stepping::rows::{Line, Mover, Rows, Source};
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::sweeps::Sweeps;
+use crate::stepping::sweeps::Problem;
 use crate::stepping::ties::Ties;
 use halfgap_contact::ImpactError;
 
@@ -54,25 +54,26 @@ pub(super) struct Scene {
 pub(super) struct Stepper {
     kicks: Kicks,
     listing: Listing,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Rows,
+    /// Rate [m/s] that is as good as none.
+    residual: f64,
     pub(super) islands: Islands,
     exact: Exact,
-    #[cfg_attr(feature = "save", serde(skip))]
-    sweeps: Sweeps,
     pub(super) impacts: Impacts,
     /// Velocities at the start of the step, as far as they are known; that of the background is behind the last.
     pub(super) node: Vec<Motion3>,
     /// Velocities in the middle of the step: first without contacts, then with them.
-    middle: Vec<Motion3>,
+    movers: Vec<Mover>,
     free: Vec<Motion3>,
     /// Those without what slows down bodies that are to hit each other at the end of the step.
-    smooth: Vec<Motion3>,
-    /// Rows of an island that touch.
+    smooth: Vec<Mover>,
+    /// Rows of an island that touch, and its resistances against rolling.
     touching: Vec<u32>,
+    rolling: Vec<u32>,
     /// Mean velocities over the kick that leads to the middle of the step.
     means: Vec<Motion3>,
     /// Buffer of the projection.
-    shifts: Vec<Motion3>,
+    shifts: Vec<Mover>,
 }
 
 /// Where a step comes from.
@@ -100,11 +101,12 @@ impl Stepper {
         let Scene { bodies, pairs, ties, .. } = scene;
         let pairs = settings.rigid.collisions.then_some(pairs);
         self.listing.list(bodies, (pairs, ties), &self.free, lengths, &mut self.rows);
-        project(bodies, &mut self.rows, settings.slack, &mut self.shifts, books);
-        self.islands.find(bodies, |_| true, &self.rows);
-        for row in &self.rows {
-            books.note_row(row, target_gap);
+        if self.rows.deepest > settings.slack || self.rows.farthest_off > settings.slack {
+            project(bodies, &mut self.rows.all, settings.slack, &mut self.shifts, books);
         }
+        books.note_gaps(&self.rows, target_gap);
+        self.islands.find(bodies, |_| true, &self.rows.all);
+        self.residual = settings.residual * span * self.kicks.fastest();
         for island in 0..self.islands.count() {
             self.advance_island(scene, (settings, span), from, island, books)?;
         }
@@ -130,8 +132,11 @@ impl Stepper {
             });
         }
         self.free.push([0.0; 3]);
-        self.middle.clone_from(&self.free);
-        self.smooth.resize(self.node.len(), [0.0; 3]);
+        self.movers.clear();
+        self.movers.extend(self.free.iter().enumerate().map(|(place, &free)| bodies.mover(place, free)));
+        if self.smooth.len() != self.movers.len() {
+            self.smooth.clone_from(&self.movers);
+        }
         self.means.resize(self.node.len(), [0.0; 3]);
     }
 
@@ -148,38 +153,41 @@ impl Stepper {
         let is_split = is_struck || from == From::Start;
         let kick = if is_split { 0.5 * span } else { span };
         let (members, list) = self.islands.get(island);
-        let mut residual = 0.0;
         if !list.is_empty() {
+            let Self { rows, rolling, .. } = self;
+            rolling.clear();
             for &row in list {
-                let row = &mut self.rows[row as usize];
-                set_offsets(row, span, if list.len() <= LARGEST_EXACT { settings.slack } else { 0.0 });
-                let forces = forces_of(scene, row);
-                row.set_impulses(forces.map(|force| force * kick));
+                let row = &mut rows.all[row as usize];
+                rolling.extend(row.roll);
+                if is_split {
+                    row.normal.impulse *= 0.5;
+                    row.slip.line.impulse *= 0.5;
+                }
             }
             books.note_solve();
-            residual = settings.residual * largest_kick(&self.rows, list, &self.kicks.accelerations, kick);
-            let solving =
-                Solving { bodies: &scene.bodies, exact: &mut self.exact, sweeps: &mut self.sweeps, residual };
-            solving.solve((&mut self.rows, list), members, &mut self.middle);
+            let mut problem = Problem { rows: &mut rows.all, list, rolls: &mut rows.rolls, rolling, movers: &mut self.movers };
+            solve(&mut problem, &mut self.exact, members, (span, settings.slack), self.residual);
         }
         for &body in members {
-            self.smooth[body as usize] = self.middle[body as usize];
+            self.smooth[body as usize].velocity = self.movers[body as usize].velocity;
         }
-        if self.find_arrivals(island, (settings, span)) {
+        if self.rows.rebounds && self.find_arrivals(island, (settings, span)) {
             let (members, list) = self.islands.get(island);
             for &body in members {
-                self.smooth[body as usize] = self.free[body as usize];
+                self.smooth[body as usize].velocity = self.free[body as usize];
             }
-            self.touching.clear();
-            self.touching.extend(list.iter().filter(|&&row| self.rows[row as usize].touches));
-            let solving =
-                Solving { bodies: &scene.bodies, exact: &mut self.exact, sweeps: &mut self.sweeps, residual };
-            solving.solve((&mut self.rows, &self.touching), members, &mut self.smooth);
+            let Self { rows, rolling, touching, .. } = self;
+            touching.clear();
+            touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
+            rolling.retain(|&roll| rows.all[rows.rolls[roll as usize].row as usize].touches);
+            let mut problem =
+                Problem { rows: &mut rows.all, list: touching, rolls: &mut rows.rolls, rolling, movers: &mut self.smooth };
+            solve(&mut problem, &mut self.exact, members, (span, settings.slack), self.residual);
         }
         self.set_off(&mut scene.bodies, island, kick, is_split, books);
         let (_, list) = self.islands.get(island);
         for &row in list {
-            remember(scene, &self.rows[row as usize], &self.smooth, kick);
+            remember(scene, &self.rows, row as usize, &self.smooth, kick);
         }
         Ok(())
     }
@@ -193,6 +201,9 @@ impl Stepper {
         island: usize,
         books: &mut StepBooks,
     ) -> Result<bool, StepError> {
+        if from == From::Before && !self.rows.strikes {
+            return Ok(false);
+        }
         let (members, list) = self.islands.get(island);
         let Some(slow) = self.slow_speed(list, (settings, span), from) else { return Ok(false) };
         let bodies = &scene.bodies;
@@ -215,14 +226,14 @@ impl Stepper {
         let before = energy(&self.node);
         books.note_kinetic(before);
         let outcome =
-            self.impacts.resolve(bodies, (&self.rows, list), &mut self.node, (settings, slow), books.counts().impacts);
+            self.impacts.resolve(bodies, (&self.rows.all, list), &mut self.node, (settings, slow), books.counts().impacts);
         outcome.map_err(|source| StepError { bodies: members.to_vec(), source })?;
         books.book_impact(energy(&self.node) - before);
         for &body in members {
             let nature = &bodies.natures[body as usize];
             let acceleration = self.kicks.accelerations[body as usize];
             let kicked = kicked(&nature.free_motion, self.node[body as usize], acceleration, 0.5 * span);
-            (self.middle[body as usize], self.free[body as usize]) = (kicked, kicked);
+            (self.movers[body as usize].velocity, self.free[body as usize]) = (kicked, kicked);
         }
         Ok(true)
     }
@@ -242,16 +253,12 @@ impl Stepper {
         let mut slow = settings.rigid.tolerances.velocity_tol;
         let mut fastest = 0.0_f64;
         for &row in list {
-            let row = &self.rows[row as usize];
-            let kick = row.normal.rate(row.places, &self.kicks.accelerations).abs();
-            slow = slow.max(SLOW_STEPS * span * kick);
-            let rate = || row.normal.rate(row.places, &self.node);
+            let row = &self.rows.all[row as usize];
+            slow = slow.max(SLOW_STEPS * span * row.rate(&self.kicks.accelerations).abs());
             let closing = match (row.strikes, from) {
                 (Some(speed), _) => speed,
-                (None, From::Start) if row.is_bilateral => rate().abs(),
-                (None, From::Start) if row.touches => -rate(),
-                // It has come to touch without being slowed down.
-                (None, From::Before) if row.touches && !row.presses && row.rebounds() => -rate(),
+                (None, From::Start) if row.is_bilateral => row.rate(&self.node).abs(),
+                (None, From::Start) if row.touches => -row.rate(&self.node),
                 _ => 0.0,
             };
             fastest = fastest.max(closing);
@@ -264,15 +271,15 @@ impl Stepper {
         let mut any = false;
         let (_, list) = self.islands.get(island);
         for &index in list {
-            let row = &self.rows[index as usize];
+            let row = &self.rows.all[index as usize];
             if row.touches || row.normal.impulse <= 0.0 || !row.rebounds() {
                 continue;
             }
-            let kick = row.normal.rate(row.places, &self.kicks.accelerations);
-            let (rate, acceleration) = (row.normal.rate(row.places, &self.node), kick + row.normal.gamma);
+            let kick = row.rate(&self.kicks.accelerations);
+            let (rate, acceleration) = (row.rate(&self.node), kick + row.gamma);
             let speed = (rate * rate - 2.0 * acceleration * row.gap).max(0.0).sqrt();
             if speed > settings.rigid.tolerances.velocity_tol.max(SLOW_STEPS * span * kick.abs()) {
-                self.rows[index as usize].arrives = Some(speed);
+                self.rows.all[index as usize].arrives = Some(speed);
                 any = true;
             }
         }
@@ -285,7 +292,8 @@ impl Stepper {
         for &body in members {
             let place = body as usize;
             let before = if is_split { self.node[place] } else { bodies.courses[place].middle };
-            let (smooth, middle, free) = (self.smooth[place], self.middle[place], self.free[place]);
+            let (smooth, middle) = (self.smooth[place].velocity, self.movers[place].velocity);
+            let free = self.free[place];
             let course = &mut bodies.courses[place];
             (course.middle, course.smooth) = (middle, smooth);
             course.acceleration = std::array::from_fn(|k| (smooth[k] - before[k]) / kick);
@@ -307,76 +315,41 @@ pub(super) struct StepError {
     pub(super) source: ImpactError,
 }
 
-/// Sets what is asked of a row: that its gap is at its target at the end of the step, and that what sticks is where it was.
-fn set_offsets(row: &mut Row, span: f64, slack: f64) {
-    let line = &mut row.normal;
-    // What overlaps more is brought back by the projection, which gives no speed.
-    let gap = if row.is_bilateral { row.gap } else { row.gap.max(-slack) };
-    line.offset = gap / span + 0.5 * span * line.gamma;
-    if let Some(slip) = &mut row.slip {
-        let off = if slack > 0.0 { slip.off } else { 0.0 };
-        slip.line.offset = off / span + 0.5 * span * slip.line.gamma - slip.running;
-    }
-}
-
-/// Forces of a row in the last step.
-fn forces_of(scene: &Scene, row: &Row) -> [f64; 3] {
-    match row.source {
-        Source::Contact { pair, contact } => scene.pairs.all()[pair as usize].contacts[contact as usize].forces,
-        Source::Connector { connector, direction } => {
-            [scene.ties.memory[connector as usize].forces[direction as usize], 0.0, 0.0]
-        }
-    }
-}
-
-/// What solves the problems of an island.
-struct Solving<'a> {
-    bodies: &'a Bodies,
-    exact: &'a mut Exact,
-    sweeps: &'a mut Sweeps,
-    /// Rate [m/s] that is as good as none.
+/// Finds the impulses of the rows of an island, beginning with those that they have, for velocities without them.
+fn solve(
+    problem: &mut Problem<'_>,
+    exact: &mut Exact,
+    members: &[u32],
+    (span, slack): (f64, f64),
     residual: f64,
-}
-
-impl Solving<'_> {
-    /// Finds the impulses of rows, beginning with those that they have, for velocities without them.
-    fn solve(self, (rows, list): (&mut [Row], &[u32]), members: &[u32], velocities: &mut [Motion3]) {
-        let is_solved =
-            list.len() <= LARGEST_EXACT && self.exact.solve(self.bodies, (rows, list), members, velocities);
-        if !is_solved {
-            self.sweeps.solve(self.bodies, (rows, list), members, velocities, (self.residual, MOST_ROUNDS));
-        }
+) {
+    if problem.list.len() > LARGEST_EXACT || !exact.solve(problem, members, (span, slack)) {
+        problem.sweep(residual, MOST_ROUNDS);
     }
-}
-
-/// Largest rate [m/s] at which rows of a list close by one kick.
-fn largest_kick(rows: &[Row], list: &[u32], accelerations: &[Motion3], kick: f64) -> f64 {
-    let kicks = list.iter().map(|&row| {
-        let row = &rows[row as usize];
-        row.normal.rate(row.places, accelerations).abs() * kick
-    });
-    kicks.fold(0.0, f64::max)
 }
 
 /// Remembers what a row carries at given velocities, in a step whose kick lasts `kick` [s].
-fn remember(scene: &mut Scene, row: &Row, velocities: &[Motion3], kick: f64) {
-    let impulses = row.impulses();
-    let presses = row.is_bilateral || impulses[0] > 0.0;
-    let arrival = row.arrives;
-    let forces = if row.touches { impulses.map(|impulse| impulse / kick) } else { [0.0; 3] };
+fn remember(scene: &mut Scene, rows: &Rows, index: usize, movers: &[Mover], kick: f64) {
+    let row = &rows.all[index];
+    let [normal, slip] = [&row.normal, &row.slip.line].map(|line| line.impulse);
+    let presses = row.is_bilateral || normal > 0.0;
+    let share = if row.touches { 1.0 / kick } else { 0.0 };
     match row.source {
         Source::Connector { connector, direction } => {
             let tie = &mut scene.ties.memory[connector as usize];
-            tie.forces[direction as usize] = forces[0];
-            (tie.presses, tie.arrival) = (presses, arrival);
+            tie.forces[direction as usize] = share * normal;
+            (tie.presses, tie.arrival) = (presses, row.arrives);
         }
         Source::Contact { pair, contact } => {
             let contact = &mut scene.pairs.all_mut()[pair as usize].contacts[contact as usize];
-            (contact.forces, contact.presses, contact.arrival) = (forces, presses, arrival);
-            let sticks = presses && row.slip.as_ref().is_some_and(|slip| {
-                let stopping = slip.stopping(row.places, velocities);
-                !Drag::slips(slip.line.impulse, slip.kinetic * impulses[0], stopping)
-            });
+            let roll = row.roll.map_or(0.0, |roll| rows.rolls[roll as usize].line.impulse);
+            contact.forces = [normal, slip, roll].map(|impulse| share * impulse);
+            (contact.presses, contact.arrival) = (presses, row.arrives);
+            let sticks = presses && row.slip.line.is_some() && {
+                let [p, q] = row.ends().map(|place| &movers[place]);
+                let stopping = slip - row.slip.line.wanted(p, q);
+                !Line::slips(slip, row.slip.bounds[1] * normal, stopping)
+            };
             contact.hold = match (sticks, contact.hold) {
                 (false, _) => Hold::Slips,
                 (true, Hold::Slips) => Hold::Here,

@@ -176,7 +176,7 @@ impl SteppingSystem {
     /// Forces of all rows that carry one in the present step.
     #[must_use]
     pub fn row_forces(&self) -> Vec<RowForce> {
-        let rows = self.stepper.rows.iter();
+        let (rows, count) = (self.stepper.rows.all.iter(), self.body_count());
         rows.filter_map(|row| {
             let (connector, features, force) = match row.source {
                 Source::Contact { pair, contact } => {
@@ -188,13 +188,13 @@ impl SteppingSystem {
                     (Some(ConnectorId(connector)), None, force)
                 }
             };
-            let normal = DVec2::new(row.normal.jacobian[0], row.normal.jacobian[1]);
+            let [x, y, ..] = row.normal.jacobian();
             (force != 0.0).then(|| RowForce {
-                bodies: row.bodies,
+                bodies: row.bodies(count),
                 connector,
                 features,
                 point: row.point,
-                normal,
+                normal: DVec2::new(x, y),
                 force,
                 bouncing: None,
             })
