@@ -16,6 +16,7 @@ pub mod engines;
 pub mod gas;
 pub mod levels;
 pub mod measure;
+pub mod pile_runs;
 pub mod plot;
 mod reference;
 pub mod scene;

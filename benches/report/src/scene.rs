@@ -47,6 +47,10 @@ pub struct Body {
     /// Share of the closing speed with which it leaves an impact. All bodies of a scene that collide have the same, for
     /// engines differ in how they combine two.
     pub elasticity: f64,
+    /// Coulomb coefficient of friction; all bodies of a scene have the same.
+    pub friction: f64,
+    /// Angular velocity at which a fixed body turns [rad/s].
+    pub spin: f64,
 }
 
 /// Mass and moment of inertia.
@@ -238,7 +242,7 @@ impl Body {
     #[must_use]
     pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
         let start = BodyState { position, ..BodyState::default() };
-        Self { name: name.to_owned(), shape, inertia: None, start, elasticity: 1.0 }
+        Self { name: name.to_owned(), shape, inertia: None, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
     }
 
     /// A disc of uniform density and a given mass [kg] that moves without turning.
@@ -246,7 +250,8 @@ impl Body {
     pub fn disc(name: &str, radius: f64, mass: f64, position: DVec2, velocity: DVec2) -> Self {
         let start = BodyState { position, velocity, ..BodyState::default() };
         let inertia = Some(Inertia { mass, moment: 0.5 * mass * radius * radius });
-        Self { name: name.to_owned(), shape: Shape::Disc { radius }, inertia, start, elasticity: 1.0 }
+        let shape = Shape::Disc { radius };
+        Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
     }
 
     /// A rectangle of uniform density and a given mass [kg].
@@ -254,7 +259,13 @@ impl Body {
     pub fn block(name: &str, size: DVec2, mass: f64, start: BodyState) -> Self {
         let inertia = Some(Inertia { mass, moment: mass * size.length_squared() / 12.0 });
         let shape = Shape::Block { width: size.x, height: size.y };
-        Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0 }
+        Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
+    }
+
+    /// The body with friction.
+    #[must_use]
+    pub fn with_friction(self, friction: f64) -> Self {
+        Self { friction, ..self }
     }
 
     /// The body with another elasticity.

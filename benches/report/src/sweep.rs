@@ -120,7 +120,7 @@ pub fn run(engine: &dyn Engine, scene: &Scene, effort: &Effort) -> Row {
 pub fn halfgap_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     // A pile at the accuracy of games: nobody would ask for more, and there is no error to show for it.
     let tolerances = if scene.has_answer() { effort.tolerances.as_slice() } else { &[PILE_TOLERANCE] };
-    tolerances.iter().map(|&tolerance| run(&Halfgap { tolerance }, scene, effort)).collect()
+    tolerances.iter().map(|&tolerance| run(&Halfgap { tolerance, step: None }, scene, effort)).collect()
 }
 
 /// Steps per second of the coarsest run of a peer.

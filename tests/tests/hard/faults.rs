@@ -18,7 +18,7 @@ fn fault(name: &str) -> Scene {
 /// The world of a scene at a tolerance, advanced to its end.
 fn world_at(scene: &Scene, tolerance: f64) -> World {
     let mut scene = scene.clone();
-    scene.run.tolerance = tolerance;
+    scene.run.tolerance = Some(tolerance);
     let mut world = World::from_scene(&scene).expect("a fine scene");
     world
         .advance_to(scene.run.end_time(), &mut |_| ())

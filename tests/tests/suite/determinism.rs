@@ -162,8 +162,8 @@ fn compare_turned(name: &str, tolerances: f64) {
         let (a, b) = (one_world.state(body), other_world.state(twin));
         largest = largest.max(a.position.distance(b.position)).max((a.angle - b.angle).abs());
     }
-    println!("{name}: {largest:e} at tolerance {:e}", one.run.tolerance);
-    assert!(largest <= tolerances * one.run.tolerance, "{name}: {largest:e}");
+    println!("{name}: {largest:e} at tolerance {:e}", one.run.tolerance_or_default());
+    assert!(largest <= tolerances * one.run.tolerance_or_default(), "{name}: {largest:e}");
 }
 
 #[test]

@@ -117,14 +117,18 @@ impl Running {
         segments: usize,
     ) -> Result<(), EngineError> {
         let (start, scale) = (&body.start, self.scale);
-        let kind = if body.inertia.is_some() { BodyType::Dynamic } else { BodyType::Static };
+        let kind = match body.inertia {
+            Some(_) => BodyType::Dynamic,
+            None if body.spin != 0.0 => BodyType::Kinematic,
+            None => BodyType::Static,
+        };
         let position = start.position * scale;
         let definition = BodyBuilder::from(foundation.body_def())
             .body_type(kind)
             .position(Position::new(position.x, position.y))
             .angle(start.angle as f32)
             .linear_velocity(vector(start.velocity * scale))
-            .angular_velocity(start.angular_velocity as f32)
+            .angular_velocity((start.angular_velocity + body.spin) as f32)
             .enable_sleep(false)
             .enable_contact_recycling(false)
             .allow_fast_rotation(true)
@@ -143,7 +147,7 @@ impl Running {
     fn add_shape(&mut self, id: BodyId, body: &Body, collides: bool, segments: usize) -> Result<(), String> {
         let told = |error: boxdd::prelude::Error| error.to_string();
         let material = SurfaceMaterial::default();
-        let material = material.with_friction(0.0).map_err(told)?;
+        let material = material.with_friction(body.friction as f32).map_err(told)?;
         let material = material.with_restitution(body.elasticity as f32).map_err(told)?;
         let filter = if collides { Filter::default() } else { Filter { mask_bits: 0, ..Filter::default() } };
         let definition = ShapeDef::builder().material(material).density(1.0).filter(filter);

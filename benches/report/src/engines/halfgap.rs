@@ -4,8 +4,8 @@ use super::{Engine, EngineError, Session};
 use crate::scene::{Body, Connector, End, Scene, Shape};
 use glam::DVec2;
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath, SlotFrame, World,
-    WorldBuilder, WorldSettings, geometry,
+    AdvanceBy, Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath, SlotFrame,
+    StepLength, Surface, UniformMotion, World, WorldBuilder, WorldSettings, geometry,
 };
 use std::sync::Arc;
 
@@ -14,6 +14,8 @@ use std::sync::Arc;
 pub struct Halfgap {
     /// Relative accuracy asked for.
     pub tolerance: f64,
+    /// Length of steps [s], with `tolerance` as their residual; `None` for events.
+    pub step: Option<f64>,
 }
 
 impl Engine for Halfgap {
@@ -26,11 +28,18 @@ impl Engine for Halfgap {
     }
 
     fn settings(&self) -> String {
-        format!("tolerance {:e}", self.tolerance)
+        match self.step {
+            Some(step) => format!("{:.0} Hz residual {:e}", 1.0 / step, self.tolerance),
+            None => format!("tolerance {:e}", self.tolerance),
+        }
     }
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
-        let world = build(scene, self.tolerance)?;
+        let strategy = match self.step {
+            Some(step) => AdvanceBy::Steps { step: StepLength::Fixed(step), residual: self.tolerance },
+            None => AdvanceBy::Events,
+        };
+        let world = build(scene, self.tolerance, strategy)?;
         Ok(Box::new(Running { world }))
     }
 }
@@ -39,8 +48,8 @@ impl Engine for Halfgap {
 ///
 /// # Errors
 /// A scene that halfgap refuses.
-pub fn build(scene: &Scene, tolerance: f64) -> Result<World, EngineError> {
-    let settings = WorldSettings { tolerance, collisions: scene.collisions, ..WorldSettings::default() };
+pub fn build(scene: &Scene, tolerance: f64, strategy: AdvanceBy) -> Result<World, EngineError> {
+    let settings = WorldSettings { tolerance, strategy, collisions: scene.collisions, ..WorldSettings::default() };
     let mut builder = WorldBuilder::new(settings);
     for body in &scene.bodies {
         let id = builder.add(body_spec(body).map_err(refused)?);
@@ -73,6 +82,9 @@ fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
         inertia,
         state: body.start,
         elasticity: body.elasticity,
+        surface: Surface { friction: body.friction, static_friction: body.friction, ..Surface::default() },
+        motion: (body.spin != 0.0)
+            .then_some(UniformMotion { angular_velocity: body.spin, ..UniformMotion::default() }),
     })
 }
 

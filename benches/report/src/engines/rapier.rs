@@ -123,6 +123,7 @@ impl Running {
     fn add_body(&mut self, body: &Body, collides: bool, segments: usize) -> Result<(), EngineError> {
         let start = &body.start;
         let builder = match body.inertia {
+            None if body.spin != 0.0 => RigidBodyBuilder::kinematic_velocity_based(),
             None => RigidBodyBuilder::fixed(),
             Some(inertia) => RigidBodyBuilder::dynamic().additional_mass_properties(MassProperties::new(
                 Vector::ZERO,
@@ -135,14 +136,14 @@ impl Running {
                 .translation(vector(start.position))
                 .rotation(start.angle)
                 .linvel(vector(start.velocity))
-                .angvel(start.angular_velocity)
+                .angvel(start.angular_velocity + body.spin)
                 .can_sleep(false)
                 .ccd_enabled(true),
         );
         for shape in colliders(&body.shape, segments)? {
             let mut collider = shape
                 .density(0.0)
-                .friction(0.0)
+                .friction(body.friction)
                 .restitution(body.elasticity)
                 .restitution_combine_rule(CoefficientCombineRule::Min);
             if !collides {

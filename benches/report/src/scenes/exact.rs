@@ -11,6 +11,20 @@ use std::path::Path;
 /// What the states in the files are good to [m].
 const REFERENCE_ERROR: f64 = 1e-13;
 
+/// Reads the scene of a file of which nothing is known, with a grid [s] of times at which it is looked at.
+pub(super) fn read_pile(name: &str, grid: f64) -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/steps").join(format!("{name}.json"));
+    let data = halfgap::scene::Scene::read(file).expect("the scenes of the tests can be read");
+    let bodies = data.bodies.iter().map(body).collect();
+    let mut scene = Scene::new(name, data.about.as_deref().unwrap_or(&data.title), bodies);
+    for force in &data.forces {
+        let ForceData::Gravity(gravity) = force else { panic!("only gravity acts in {name}") };
+        scene.gravity += DVec2::from(gravity.acceleration);
+    }
+    (scene.duration, scene.check_grid) = (data.run.duration, grid);
+    scene
+}
+
 /// Reads a scene by its name, with the grid [s] of its check times.
 pub(super) fn read(name: &str, grid: f64) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/scenes");
@@ -33,7 +47,6 @@ pub(super) fn read(name: &str, grid: f64) -> Scene {
 }
 
 fn body(data: &BodyData) -> Body {
-    assert!(data.friction == 0.0, "{} has friction", data.name);
     let inertia = data.mass.zip(data.moment).map(|(mass, moment)| Inertia { mass, moment });
     let start = BodyState {
         position: data.position.unwrap_or_default().into(),
@@ -41,7 +54,15 @@ fn body(data: &BodyData) -> Body {
         velocity: data.velocity.into(),
         angular_velocity: data.angular_velocity,
     };
-    Body { name: data.name.clone(), shape: shape(&data.shape), inertia, start, elasticity: data.elasticity }
+    Body {
+        name: data.name.clone(),
+        shape: shape(&data.shape),
+        inertia,
+        start,
+        elasticity: data.elasticity,
+        friction: data.friction,
+        spin: 0.0,
+    }
 }
 
 fn shape(data: &ShapeData) -> Shape {

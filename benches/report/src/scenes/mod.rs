@@ -8,7 +8,7 @@ mod exact;
 mod four_bar;
 mod geneva;
 mod impacts;
-mod piles;
+pub mod piles;
 mod rail;
 
 use crate::scene::Scene;

@@ -1,5 +1,6 @@
-//! Big piles at the accuracy of games, without friction: nothing is known of them but what they cost.
+//! Big piles at the accuracy of games: nothing is known of them but what they cost.
 
+use super::exact;
 use crate::scene::{Body, Scene, Shape};
 use glam::DVec2;
 use halfgap::BodyState;
@@ -40,4 +41,116 @@ fn pile(name: &str, about: &str, bodies: Vec<Body>, elasticity: f64, duration: f
     scene.gravity = DVec2::new(0.0, -GRAVITY);
     (scene.duration, scene.check_grid) = (duration, 0.05);
     scene
+}
+
+/// Piles with friction, for advances by steps, by their names.
+type Maker = (&'static str, fn() -> Scene);
+
+/// Number of times a second at which piles are looked at.
+const FRAMES: f64 = 60.0;
+const FRICTION: f64 = 0.5;
+
+const ROUGH: [Maker; 7] = [
+    ("pile_200", || exact::read_pile("pile_200", 1.0 / FRAMES)),
+    ("pyramid_20", || pyramid(20)),
+    ("pyramid_50", || pyramid(50)),
+    ("tower_100", tower),
+    ("wall_1000", wall),
+    ("hopper_2000", hopper),
+    ("heaps_10000", || heaps(10_000)),
+];
+
+/// The piles with friction whose name is wanted.
+#[must_use]
+pub fn rough(is_wanted: impl Fn(&str) -> bool) -> Vec<Scene> {
+    ROUGH.iter().filter(|(name, _)| is_wanted(name)).map(|(_, make)| make()).collect()
+}
+
+fn rough_pile(name: &str, about: &str, bodies: Vec<Body>, duration: f64) -> Scene {
+    let bodies = bodies.into_iter().map(|body| body.with_friction(FRICTION)).collect();
+    Scene { check_grid: 1.0 / FRAMES, ..pile(name, about, bodies, 0.0, duration) }
+}
+
+fn floor(width: f64) -> Body {
+    Body::fixed("floor", Shape::Block { width, height: 1.0 }, DVec2::new(0.0, -0.5))
+}
+
+fn at(x: f64, y: f64) -> BodyState {
+    BodyState { position: DVec2::new(x, y), ..BodyState::default() }
+}
+
+/// Boxes at rest, with gaps between those of a row, as in `exact__pyramid_20`.
+fn pyramid(rows: u32) -> Scene {
+    let mut bodies = vec![floor(4.0 * f64::from(rows))];
+    for row in 0..rows {
+        for column in 0..rows - row {
+            let x = 1.05 * (f64::from(column) - 0.5 * f64::from(rows - row - 1));
+            bodies.push(Body::block(&format!("b{row}.{column}"), DVec2::ONE, 1.0, at(x, f64::from(row) + 0.5)));
+        }
+    }
+    rough_pile(&format!("pyramid_{rows}"), "a pyramid of boxes at rest", bodies, 5.0)
+}
+
+fn tower() -> Scene {
+    let mut bodies = vec![floor(20.0)];
+    bodies.extend((0..100).map(|index| {
+        Body::block(&format!("box {index}"), DVec2::ONE, 1.0, at(0.0, f64::from(index) + 0.5))
+    }));
+    rough_pile("tower_100", "100 boxes stand on each other", bodies, 5.0)
+}
+
+/// A wall of bricks in running bond that a heavy ball strikes.
+fn wall() -> Scene {
+    let (across, rows, size) = (50, 20, DVec2::new(1.0, 0.5));
+    let mut bodies = vec![floor(400.0)];
+    for row in 0..rows {
+        let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+        for column in 0..across {
+            let x = f64::from(column) - 0.5 * f64::from(across) + shift;
+            let start = at(x * size.x, (f64::from(row) + 0.5) * size.y);
+            bodies.push(Body::block(&format!("brick {row}.{column}"), size, 1.0, start));
+        }
+    }
+    let place = DVec2::new(-40.0, 5.0);
+    bodies.push(Body::disc("ball", 1.0, 50.0, place, DVec2::new(30.0, 0.0)));
+    rough_pile("wall_1000", "a wall of 1,000 bricks is struck by a ball", bodies, 5.0)
+}
+
+/// Discs above the outlet of a hopper.
+fn hopper() -> Scene {
+    let side = |name: &str, x: f64, angle: f64| {
+        let mut wall = Body::fixed(name, Shape::Block { width: 12.0, height: 0.5 }, DVec2::new(x, 4.0));
+        wall.start.angle = angle;
+        wall
+    };
+    let mut bodies = vec![floor(60.0), side("left", -5.0, -0.8), side("right", 5.0, 0.8)];
+    for index in 0..2000_u32 {
+        let (column, row) = (f64::from(index % 50), f64::from(index / 50));
+        let radius = 0.09 + 0.02 * f64::from(index * 7 % 11) / 11.0;
+        let place = DVec2::new(0.24 * (column - 24.5) + 0.05 * (row % 2.0), 9.5 + 0.24 * row);
+        bodies.push(Body::disc(&format!("disc {index}"), radius, radius * radius * 100.0, place, DVec2::ZERO));
+    }
+    rough_pile("hopper_2000", "2,000 discs run through the outlet of a hopper", bodies, 5.0)
+}
+
+/// Discs that fall into boxes of 100 each, so that heaps of any number have one depth.
+#[must_use]
+pub fn heaps(count: u32) -> Scene {
+    let (radius, across, per_box) = (0.25, 10, 100);
+    let (pitch, width) = (2.2 * radius, 2.2 * radius * 10.0);
+    let boxes = count / per_box;
+    let mut bodies = vec![floor(f64::from(boxes + 2) * 2.0 * width)];
+    for place in 0..=boxes {
+        let x = (f64::from(place) - 0.5 * f64::from(boxes)) * (width + 1.0) - 0.5;
+        bodies.push(Body::fixed(&format!("wall {place}"), Shape::Block { width: 1.0, height: 12.0 }, DVec2::new(x, 6.0)));
+    }
+    for index in 0..count {
+        let (home, own) = (index / per_box, index % per_box);
+        let (column, row) = (f64::from(own % across), f64::from(own / across));
+        let left = (f64::from(home) - 0.5 * f64::from(boxes)) * (width + 1.0);
+        let shift = if own / across % 2 == 0 { -0.04 } else { 0.04 };
+        let place = DVec2::new(left + (column + 0.5) * pitch + shift * radius, (row + 0.5) * 2.4 * radius);
+        bodies.push(Body::disc(&format!("disc {index}"), radius, 1.0, place, DVec2::ZERO));
+    }
+    rough_pile(&format!("heaps_{count}"), "discs settle in boxes of 100", bodies, 2.0)
 }

@@ -42,6 +42,12 @@ pub(super) struct Course {
 }
 
 impl Course {
+    /// Stays where it is.
+    pub(super) fn stop(&mut self) {
+        let Self { position, angle, .. } = *self;
+        *self = Self { position, angle, ..Self::default() };
+    }
+
     /// State at a time `since` [s] the start of a step of a length `span` [s].
     #[inline]
     pub(super) fn state_at(&self, since: f64, span: f64) -> BodyState {

@@ -5,8 +5,9 @@ use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure_contacts};
 use crate::stepping::pairs::{Pair, Pairs};
 use crate::stepping::rows::{Line, Roll, Row, Rows, Slip, Source};
+use crate::stepping::sleep::Sleep;
 use crate::stepping::ties::Ties;
-use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned};
+use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned, visit_near_features};
 use halfgap_geometry::{GapKind, GapSample};
 
 /// Coefficients of the relative turning of two bodies.
@@ -27,6 +28,8 @@ pub(super) struct Listing {
     #[cfg_attr(feature = "save", serde(skip))]
     found: Vec<Found>,
     gone: Vec<Contact>,
+    /// Whether each pair has been listed in the step.
+    listed: Vec<bool>,
 }
 
 /// Lengths of a step that decide what is near.
@@ -45,46 +48,115 @@ impl Listing {
     pub(super) fn list(
         &mut self,
         bodies: &Bodies,
-        (pairs, ties): (Option<&mut Pairs>, &mut Ties),
+        (pairs, ties, sleep): (Option<&mut Pairs>, &mut Ties, &mut Sleep),
         free: &[Motion3],
         lengths: Lengths,
         rows: &mut Rows,
     ) {
         rows.clear();
         ties.follow(bodies);
-        list_ties(bodies, ties, lengths, rows);
-        let Some(pairs) = pairs else { return };
+        let Some(pairs) = pairs else {
+            list_ties(bodies, ties, sleep, lengths, rows);
+            return;
+        };
         self.ways.clear();
         self.ways.extend(bodies.natures.iter().zip(free).map(|(nature, &free)| lengths.span * farthest(nature.reach, free)));
-        for place in 0..bodies.count() {
+        for place in (0..bodies.count()).filter(|&place| !sleep.is_asleep(place)) {
             pairs.cover(bodies, BodyId::from_index(place), self.ways[place]);
         }
-        for (index, pair) in pairs.all_mut().iter_mut().enumerate() {
+        self.listed.clear();
+        self.listed.resize(pairs.all().len(), false);
+        // What is woken has pairs that were passed over.
+        while self.list_contacts(bodies, (pairs, ties, sleep), free, lengths, rows) {}
+        list_ties(bodies, ties, sleep, lengths, rows);
+    }
+
+    /// Lists the contacts of bodies that are awake and have not been listed. True if bodies were woken.
+    fn list_contacts(
+        &mut self,
+        bodies: &Bodies,
+        (pairs, ties, sleep): (&mut Pairs, &Ties, &mut Sleep),
+        free: &[Motion3],
+        lengths: Lengths,
+        rows: &mut Rows,
+    ) -> bool {
+        let mut has_woken = false;
+        for index in 0..pairs.all().len() {
+            let pair = &pairs.all()[index];
             let places = pair.bodies.map(BodyId::index);
-            let way = self.ways[places[0]] + self.ways[places[1]];
-            let gone = bodies.ways[places[0]] + bodies.ways[places[1]];
-            let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
-            let is_known = gone + way <= pair.known_until
-                && measure_contacts(sides, lengths.slack, &pair.contacts, &mut self.found);
-            if !is_known {
-                let reaches = places.map(|place| bodies.natures[place].reach);
-                let reach = way + MARGIN * reaches[0].min(reaches[1]);
-                pair.known_until = gone + reach;
-                let nearness = Nearness {
-                    reach: reach + lengths.target_gap,
-                    // What overlaps more has done so before, or it would lie behind another edge.
-                    depth: way + DEEPER * pair.deepest + lengths.slack,
-                    overrun: lengths.slack,
-                };
-                find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
+            let sleeps = places.map(|place| sleep.is_asleep(place));
+            let stays = |side: usize| {
+                sleeps[side] || bodies.natures[places[side]].body.is_fixed() && free[places[side]] == [0.0; 3]
+            };
+            if self.listed[index] || stays(0) && stays(1) {
+                continue;
             }
-            pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
-            for (contact, found) in self.found.iter().enumerate() {
-                if found.sample.gap <= way + lengths.target_gap {
-                    add_contact(bodies, pair, (index, contact), &found.sample, lengths, rows);
-                } else {
-                    pair.contacts[contact].let_go();
+            if sleeps[0] || sleeps[1] {
+                // Looked at without changing what is remembered: it sleeps on if nothing comes near.
+                if !self.comes_near(bodies, pair, (places, sleeps), free, lengths) {
+                    continue;
                 }
+                for place in places {
+                    has_woken |= sleep.wake(bodies, (pairs, ties), place);
+                }
+            }
+            self.listed[index] = true;
+            self.list_pair(bodies, &mut pairs.all_mut()[index], index, lengths, rows);
+        }
+        has_woken
+    }
+
+    /// True if a body may touch one that sleeps within the step.
+    fn comes_near(
+        &mut self,
+        bodies: &Bodies,
+        pair: &Pair,
+        (places, sleeps): ([usize; 2], [bool; 2]),
+        free: &[Motion3],
+        lengths: Lengths,
+    ) -> bool {
+        let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
+        let way: f64 = (0..2).map(|side| if sleeps[side] { 0.0 } else { self.ways[places[side]] }).sum();
+        let nearness = Nearness { reach: way + lengths.target_gap, depth: pair.deepest + way, overrun: lengths.slack };
+        let still = [0.0; 3];
+        let [p, q] = [0, 1].map(|side: usize| if sleeps[side] { &still } else { &free[places[side]] });
+        let mut comes = false;
+        visit_near_features(sides, &nearness, &mut |_, sample| {
+            let (a, b) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
+            let motions = [sides[a].1, sides[b].1];
+            let line = Line::new(GapKinematics::of(sample, motions[0], motions[1]).jacobian, [BodyId::WORLD; 2].map(|body| bodies.inertia(body)), 0.0);
+            let rate = if a == 0 { line.rate(p, q) } else { line.rate(q, p) };
+            comes |= sample.gap - lengths.target_gap + lengths.span * rate < 0.0;
+        });
+        comes
+    }
+
+    /// Lists the contacts of a pair.
+    fn list_pair(&mut self, bodies: &Bodies, pair: &mut Pair, index: usize, lengths: Lengths, rows: &mut Rows) {
+        let places = pair.bodies.map(BodyId::index);
+        let way = self.ways[places[0]] + self.ways[places[1]];
+        let gone = bodies.ways[places[0]] + bodies.ways[places[1]];
+        let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
+        let is_known = gone + way <= pair.known_until
+            && measure_contacts(sides, lengths.slack, &pair.contacts, &mut self.found);
+        if !is_known {
+            let reaches = places.map(|place| bodies.natures[place].reach);
+            let reach = way + MARGIN * reaches[0].min(reaches[1]);
+            pair.known_until = gone + reach;
+            let nearness = Nearness {
+                reach: reach + lengths.target_gap,
+                // What overlaps more has done so before, or it would lie behind another edge.
+                depth: way + DEEPER * pair.deepest + lengths.slack,
+                overrun: lengths.slack,
+            };
+            find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
+        }
+        pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
+        for (contact, found) in self.found.iter().enumerate() {
+            if found.sample.gap <= way + lengths.target_gap {
+                add_contact(bodies, pair, (index, contact), &found.sample, lengths, rows);
+            } else {
+                pair.contacts[contact].let_go();
             }
         }
     }
@@ -180,12 +252,13 @@ fn rolling_bound(surface: &PairSurface, radii: [Option<f64>; 2]) -> Option<f64> 
     (curvature != 0.0).then(|| surface.rolling / curvature.abs())
 }
 
-fn list_ties(bodies: &Bodies, ties: &Ties, lengths: Lengths, rows: &mut Rows) {
+fn list_ties(bodies: &Bodies, ties: &Ties, sleep: &Sleep, lengths: Lengths, rows: &mut Rows) {
     let Lengths { span, slack, .. } = lengths;
     for (index, connector) in ties.all.iter().enumerate() {
         let tie = &ties.memory[index];
         let ids = connector.bodies();
-        if ids.iter().all(|&body| bodies.is_fixed(body)) {
+        // Bodies that are tied sleep together.
+        if ids.iter().all(|&body| bodies.is_fixed(body) || sleep.is_asleep(body.index())) {
             continue;
         }
         let inertia = ids.map(|body| bodies.inertia(body));

@@ -5,7 +5,7 @@
 //!
 //! `settings` · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
 //! remembered of where they touch · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `listing`: what contacts
-//! and connectors ask of velocities · `islands` · `exact`, `sweeps`: impulses · `impacts` · `projection`: back to the gaps · `step`:
+//! and connectors ask of velocities · `islands` · `exact`, `sweeps`: impulses · `impacts` · `projection`: back to the gaps · `sleep` · `step`:
 //! from one step to the next · `books` · `system`: what callers see.
 
 mod bodies;
@@ -20,6 +20,7 @@ mod pairs;
 mod projection;
 mod rows;
 mod settings;
+mod sleep;
 mod step;
 mod sweeps;
 mod system;

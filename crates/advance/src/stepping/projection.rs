@@ -48,8 +48,8 @@ pub(super) fn project(
         row.gap += row.normal.rate(p, q);
         row.slip.off += row.slip.line.rate(p, q);
     }
-    for place in 0..bodies.count() {
-        let shift = shifts[place].velocity;
+    for (place, shift) in shifts.iter().enumerate().take(bodies.count()) {
+        let shift = shift.velocity;
         if shift != [0.0; 3] {
             let nature = &bodies.natures[place];
             let acceleration = nature.free_motion.acceleration;

@@ -27,6 +27,7 @@ use crate::stepping::pairs::Pairs;
 use crate::stepping::projection::project;
 use crate::stepping::rows::{Line, Mover, Rows, Source};
 use crate::stepping::settings::SteppingSettings;
+use crate::stepping::sleep::Sleep;
 use crate::stepping::sweeps::Problem;
 use crate::stepping::ties::Ties;
 use halfgap_contact::ImpactError;
@@ -46,6 +47,7 @@ pub(super) struct Scene {
     pub(super) pairs: Pairs,
     pub(super) ties: Ties,
     pub(super) laws: ForceLaws,
+    pub(super) sleep: Sleep,
 }
 
 /// What a step works with.
@@ -98,14 +100,14 @@ impl Stepper {
         self.find_free(&scene.bodies, span, from);
         let target_gap = settings.rigid.tolerances.target_gap;
         let lengths = Lengths { span, target_gap, slack: settings.slack };
-        let Scene { bodies, pairs, ties, .. } = scene;
+        let Scene { bodies, pairs, ties, sleep, .. } = scene;
         let pairs = settings.rigid.collisions.then_some(pairs);
-        self.listing.list(bodies, (pairs, ties), &self.free, lengths, &mut self.rows);
+        self.listing.list(bodies, (pairs, ties, sleep), &self.free, lengths, &mut self.rows);
         if self.rows.deepest > settings.slack || self.rows.farthest_off > settings.slack {
             project(bodies, &mut self.rows.all, settings.slack, &mut self.shifts, books);
         }
         books.note_gaps(&self.rows, target_gap);
-        self.islands.find(bodies, |_| true, &self.rows.all);
+        self.islands.find(bodies, |place| !sleep.is_asleep(place), &self.rows.all);
         self.residual = settings.residual * span * self.kicks.fastest();
         for island in 0..self.islands.count() {
             self.advance_island(scene, (settings, span), from, island, books)?;
@@ -189,6 +191,10 @@ impl Stepper {
         for &row in list {
             remember(scene, &self.rows, row as usize, &self.smooth, kick);
         }
+        let Scene { bodies, laws, sleep, .. } = scene;
+        let (members, list) = self.islands.get(island);
+        let fall = span * self.kicks.fastest();
+        sleep.settle(bodies, laws, (members, &self.rows.all, list), (self.residual, fall));
         Ok(())
     }
 

@@ -11,6 +11,7 @@ use crate::stepping::books::StepBooks;
 use crate::stepping::pairs::Pairs;
 use crate::stepping::rows::Source;
 use crate::stepping::settings::SteppingSettings;
+use crate::stepping::sleep::Sleep;
 use crate::stepping::step::{From, Scene, StepError, Stepper};
 use crate::stepping::ties::Ties;
 use crate::system::EventDriven;
@@ -50,7 +51,8 @@ impl SteppingSystem {
         let books = StepBooks::new(force_laws.len());
         let bodies = Bodies::new(bodies);
         let laws = ForceLaws::new(force_laws, count, &Snapshot::new(start.seconds(), &bodies.movings));
-        let scene = Scene { bodies, pairs: Pairs::new(count, excluded, settings.rigid.tolerances.target_gap), ties: Ties::new(connectors), laws };
+        let sleep = Sleep::new(count);
+        let scene = Scene { sleep, bodies, pairs: Pairs::new(count, excluded, settings.rigid.tolerances.target_gap), ties: Ties::new(connectors), laws };
         let mut system = Self {
             settings,
             scene,
@@ -314,6 +316,7 @@ impl SteppingSystem {
         let time = time.max(self.node);
         self.books.begin(time.since(self.node) - 0.5 * self.settings.step);
         self.go_to(time);
+        self.scene.sleep.wake_all();
         act(&mut self.scene, &mut self.books);
         self.begin(From::Start)?;
         Ok(None)

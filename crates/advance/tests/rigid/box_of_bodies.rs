@@ -61,16 +61,12 @@ pub(crate) fn body(shape: &Shape, state: BodyState) -> BodyPart {
         inverse_moment: 1.0 / (mass.area * mass.moment_per_mass),
         elasticity: 1.0,
     };
-    BodyPart { body, free_motion: FreeMotion::default(), state }
+    BodyPart::new(body, FreeMotion::default(), state)
 }
 
 pub(crate) fn fixed(shape: &Shape, position: DVec2) -> BodyPart {
     let body = Body { shape: shape.clone(), inverse_mass: 0.0, inverse_moment: 0.0, elasticity: 1.0 };
-    BodyPart {
-        body,
-        free_motion: FreeMotion::default(),
-        state: BodyState { position, ..BodyState::default() },
-    }
+    BodyPart::new(body, FreeMotion::default(), BodyState { position, ..BodyState::default() })
 }
 
 pub(crate) fn disc(radius: f64) -> Shape {
