@@ -15,7 +15,13 @@ fn engines() -> Vec<Box<dyn Engine>> {
     };
     vec![
         Box::new(Box2d { steps_per_check: 1, substeps: 4, segments: 48, scale: 1.0 }),
-        Box::new(Rapier { steps_per_check: 1, iterations: 4, segments: 48, tuning: Tuning::Stock, joints: Joints::Impulse }),
+        Box::new(Rapier {
+            steps_per_check: 1,
+            iterations: 4,
+            segments: 48,
+            tuning: Tuning::Stock,
+            joints: Joints::Impulse,
+        }),
         halfgap(60.0, 1.0),
         halfgap(60.0, 1e-1),
         halfgap(60.0, 1e-2),
@@ -37,20 +43,32 @@ fn main() {
             other => panic!("unknown option {other}"),
         }
     }
-    println!("| scene | engine | settings | ms per simulated s | longest frame [ms] | overlap [mm] | gain in a frame [mm of height] | creep [mm/s] | drift [mm] |");
+    println!(
+        "| scene | engine | settings | ms per simulated s | longest frame [ms] | overlap [mm] | gain in a frame [mm of height] | creep [mm/s] | drift [mm] |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
-    for scene in piles::rough(|name| only.is_empty() || only.iter().any(|part| name.contains(part.as_str()))) {
+    for scene in piles::rough(|name| only.is_empty() || only.iter().any(|part| name.contains(part.as_str())))
+    {
         for candidate in engines() {
             if engine.as_ref().is_some_and(|name| name != candidate.name()) {
                 continue;
             }
             let runs: Vec<_> = (0..passes).map(|_| run(candidate.as_ref(), &scene)).collect();
-            let best = runs.into_iter().flatten().min_by(|a, b| a.wall_per_second.total_cmp(&b.wall_per_second));
+            let best =
+                runs.into_iter().flatten().min_by(|a, b| a.wall_per_second.total_cmp(&b.wall_per_second));
             let name = (candidate.name(), candidate.settings());
             match best {
                 Some(PileRun { wall_per_second, longest_frame, deepest, gain, creep, drift }) => println!(
                     "| {} | {} | {} | {:.1} | {:.2} | {:.2} | {:.2e} | {:.3} | {:.1} |",
-                    scene.name, name.0, name.1, 1e3 * wall_per_second, 1e3 * longest_frame, 1e3 * deepest, 1e3 * gain, 1e3 * creep, 1e3 * drift
+                    scene.name,
+                    name.0,
+                    name.1,
+                    1e3 * wall_per_second,
+                    1e3 * longest_frame,
+                    1e3 * deepest,
+                    1e3 * gain,
+                    1e3 * creep,
+                    1e3 * drift
                 ),
                 None => println!("| {} | {} | {} | failed |", scene.name, name.0, name.1),
             }

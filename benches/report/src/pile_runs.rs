@@ -57,7 +57,9 @@ pub fn run(engine: &dyn Engine, scene: &Scene) -> Result<PileRun, EngineError> {
         }
     }
     let weight: f64 = scene.bodies.iter().filter_map(|body| body.inertia).map(|inertia| inertia.mass).sum();
-    let way = |from: &[DVec2]| states.iter().zip(from).map(|(state, from)| (state.position - *from).length()).fold(0.0, f64::max);
+    let way = |from: &[DVec2]| {
+        states.iter().zip(from).map(|(state, from)| (state.position - *from).length()).fold(0.0, f64::max)
+    };
     Ok(PileRun {
         wall_per_second: wall / scene.duration,
         longest_frame: longest,

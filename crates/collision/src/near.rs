@@ -30,7 +30,8 @@ pub fn visit_near_features(
     let mut look = |feature_a: FeatureId, feature_b: FeatureId| {
         let features = [a.0.feature(feature_a), b.0.feature(feature_b)];
         let poses = [&a.1.pose, &b.1.pose];
-        let Some(mut sample) = GapSample::measure_unbounded(features[0], poses[0], features[1], poses[1]) else {
+        let Some(mut sample) = GapSample::measure_unbounded(features[0], poses[0], features[1], poses[1])
+        else {
             return;
         };
         if sample.gap > reach || sample.gap < -depth || sample.overrun > overrun {

@@ -104,6 +104,8 @@ pub use run::{Progress, Reached, Record, RunPlan, RunReport, run, unwatched};
 pub use run_error::{Outcome, RunError};
 #[cfg(feature = "save")]
 pub use saving::{LoadError, SaveError};
-pub use settings::{AdvanceBy, DEFAULT_TOLERANCE, Integrator, StepLength, Stabilization, ToleranceOverrides, WorldSettings};
+pub use settings::{
+    AdvanceBy, DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings,
+};
 pub use world::{Energy, Inertia, Statistics, World};
 pub use world_error::{ConnectorName, WorldError};

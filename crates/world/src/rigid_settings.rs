@@ -1,6 +1,6 @@
 //! Settings of the advance, from the settings of a world and its scales.
 
-use crate::settings::{Integrator, Stabilization, StepLength, ToleranceOverrides, WorldSettings};
+use crate::settings::{Integrator, Stabilization, ToleranceOverrides, WorldSettings};
 use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, Scales, StepControl};
 use halfgap_advance::stepping::SteppingSettings;
@@ -35,19 +35,18 @@ pub(crate) fn rigid_settings(
     }
 }
 
+/// Largest error of positions that steps leave, as a fraction of the smallest body [-]: it cannot be seen.
+const MOST_SLACK: f64 = 1e-4;
+
 /// Returns the settings of an advance by steps.
 pub(crate) fn stepping_settings(
     rigid: RigidSettings,
-    (step, residual): (StepLength, f64),
+    (step, residual): (f64, f64),
     restitution: Restitution,
     scales: &Scales,
 ) -> SteppingSettings {
-    let step = match step {
-        StepLength::Fixed(step) => step,
-        StepLength::ByTolerance => 1.0 / 240.0,
-    };
     let length = scales.smallest_radius.unwrap_or(scales.coordinate);
-    let slack = (residual.min(1e-4) * length).max(rigid.tolerances.accuracy);
+    let slack = (residual.min(MOST_SLACK) * length).max(rigid.tolerances.accuracy);
     SteppingSettings { step, residual, slack, restitution, rigid }
 }
 

@@ -27,20 +27,11 @@ pub enum AdvanceBy {
     Events,
     /// Steps, in which contacts are problems of velocities: with friction, and for piles.
     Steps {
-        /// Length of the steps.
-        step: StepLength,
+        /// Length of the steps [s].
+        step: f64,
         /// Change of an impulse, as a fraction of the largest [-], up to which the impulses of a step are found.
         residual: f64,
     },
-}
-
-/// Length of steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StepLength {
-    /// Always the same [s].
-    Fixed(f64),
-    /// Chosen so that errors keep to the tolerance.
-    ByTolerance,
 }
 
 /// Settings of a world, fixed when it is built.

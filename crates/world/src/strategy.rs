@@ -24,7 +24,7 @@ use std::sync::Arc;
 #[cfg_attr(feature = "save", derive(serde::Serialize))]
 pub(crate) enum Strategy {
     /// Each event at its own time.
-    Events(RigidSystem),
+    Events(Box<RigidSystem>),
     /// Steps.
     Steps(Box<SteppingSystem>),
 }
@@ -36,11 +36,15 @@ impl Strategy {
         settings: RigidSettings,
         start: Time,
     ) -> Result<Self, AdvanceError> {
-        RigidSystem::new(parts, settings, start).map(Self::Events)
+        RigidSystem::new(parts, settings, start).map(|system| Self::Events(Box::new(system)))
     }
 
     /// Makes the system of parts that fit together, to be advanced by steps.
-    pub(crate) fn steps(parts: RigidParts, settings: SteppingSettings, start: Time) -> Result<Self, AdvanceError> {
+    pub(crate) fn steps(
+        parts: RigidParts,
+        settings: SteppingSettings,
+        start: Time,
+    ) -> Result<Self, AdvanceError> {
         SteppingSystem::new(parts, settings, start).map(|system| Self::Steps(Box::new(system)))
     }
 
@@ -299,7 +303,7 @@ impl EventDriven for Strategy {
 #[cfg(feature = "save")]
 #[derive(serde::Deserialize)]
 pub(crate) enum SavedStrategy {
-    Events(SavedSystem),
+    Events(Box<SavedSystem>),
     Steps(Box<SavedStepping>),
 }
 
@@ -308,8 +312,12 @@ impl SavedStrategy {
     /// The system, given the force laws that it had.
     pub(crate) fn with_force_laws(self, force_laws: Vec<Arc<dyn ForceLaw>>) -> Result<Strategy, PartsError> {
         match self {
-            Self::Events(saved) => saved.with_force_laws(force_laws).map(Strategy::Events),
-            Self::Steps(saved) => saved.with_force_laws(force_laws).map(|system| Strategy::Steps(Box::new(system))),
+            Self::Events(saved) => {
+                saved.with_force_laws(force_laws).map(|system| Strategy::Events(Box::new(system)))
+            }
+            Self::Steps(saved) => {
+                saved.with_force_laws(force_laws).map(|system| Strategy::Steps(Box::new(system)))
+            }
         }
     }
 }

@@ -23,5 +23,6 @@ mod slots_rods_ropes;
 mod spline_rails;
 mod stacks;
 mod start;
+mod steps;
 mod tolerance_slope;
 mod walls;

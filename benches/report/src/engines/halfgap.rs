@@ -4,10 +4,13 @@ use super::{Engine, EngineError, Session};
 use crate::scene::{Body, Connector, End, Scene, Shape};
 use glam::DVec2;
 use halfgap::{
-    AdvanceBy, Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath, SlotFrame,
-    StepLength, Surface, UniformMotion, World, WorldBuilder, WorldSettings, geometry,
+    AdvanceBy, Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath,
+    SlotFrame, Surface, UniformMotion, World, WorldBuilder, WorldSettings, geometry,
 };
 use std::sync::Arc;
+
+/// Tolerance from which thresholds of steps follow, as in scene files.
+const FINE: f64 = 1e-6;
 
 /// halfgap at a tolerance.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +39,7 @@ impl Engine for Halfgap {
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
         let strategy = match self.step {
-            Some(step) => AdvanceBy::Steps { step: StepLength::Fixed(step), residual: self.tolerance },
+            Some(step) => AdvanceBy::Steps { step, residual: self.tolerance },
             None => AdvanceBy::Events,
         };
         let world = build(scene, self.tolerance, strategy)?;
@@ -49,7 +52,15 @@ impl Engine for Halfgap {
 /// # Errors
 /// A scene that halfgap refuses.
 pub fn build(scene: &Scene, tolerance: f64, strategy: AdvanceBy) -> Result<World, EngineError> {
-    let settings = WorldSettings { tolerance, strategy, collisions: scene.collisions, ..WorldSettings::default() };
+    let settings = WorldSettings {
+        tolerance: match strategy {
+            AdvanceBy::Events => tolerance,
+            AdvanceBy::Steps { .. } => tolerance.min(FINE),
+        },
+        strategy,
+        collisions: scene.collisions,
+        ..WorldSettings::default()
+    };
     let mut builder = WorldBuilder::new(settings);
     for body in &scene.bodies {
         let id = builder.add(body_spec(body).map_err(refused)?);

@@ -76,7 +76,15 @@ pub(super) fn scene() -> Scene {
     let checks = [1.5, 2.0, 4.0, 8.0].map(check).to_vec();
     let start = BodyState { angle: START, angular_velocity: RATE, ..BodyState::default() };
     let shape = Shape::Outline(vec![outline()]);
-    let cam = Body { name: "cam".to_owned(), shape, inertia: Some(CAM), start, elasticity: 0.0, friction: 0.0, spin: 0.0 };
+    let cam = Body {
+        name: "cam".to_owned(),
+        shape,
+        inertia: Some(CAM),
+        start,
+        elasticity: 0.0,
+        friction: 0.0,
+        spin: 0.0,
+    };
     let roller = Body::disc("roller", ROLLER, ROLLER_MASS, DVec2::new(0.0, BASE + ROLLER), DVec2::ZERO);
     let mut scene =
         Scene::new("cam_and_roller", "a cam turns under a roller", vec![cam, roller.with_elasticity(0.0)]);

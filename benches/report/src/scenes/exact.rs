@@ -13,7 +13,8 @@ const REFERENCE_ERROR: f64 = 1e-13;
 
 /// Reads the scene of a file of which nothing is known, with a grid [s] of times at which it is looked at.
 pub(super) fn read_pile(name: &str, grid: f64) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/steps").join(format!("{name}.json"));
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/steps").join(format!("{name}.json"));
     let data = halfgap::scene::Scene::read(file).expect("the scenes of the tests can be read");
     let bodies = data.bodies.iter().map(body).collect();
     let mut scene = Scene::new(name, data.about.as_deref().unwrap_or(&data.title), bodies);

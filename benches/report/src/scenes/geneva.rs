@@ -65,8 +65,15 @@ pub(super) fn scene() -> Scene {
         spin: 0.0,
     };
     let shape = Shape::Outline(vec![outline(&drive)]);
-    let wheel =
-        Body { name: "wheel".to_owned(), shape, inertia: Some(WHEEL), start: wheel_start, elasticity: 0.0, friction: 0.0, spin: 0.0 };
+    let wheel = Body {
+        name: "wheel".to_owned(),
+        shape,
+        inertia: Some(WHEEL),
+        start: wheel_start,
+        elasticity: 0.0,
+        friction: 0.0,
+        spin: 0.0,
+    };
     let mut scene = Scene::new("geneva_drive", "a pin turns a wheel of six slots by steps", vec![pin, wheel]);
     scene.connectors = vec![
         Connector::Pin(End::world(pivot), End::body(0, DVec2::new(-drive.radius(), 0.0))),

@@ -85,7 +85,12 @@ fn pyramid(rows: u32) -> Scene {
     for row in 0..rows {
         for column in 0..rows - row {
             let x = 1.05 * (f64::from(column) - 0.5 * f64::from(rows - row - 1));
-            bodies.push(Body::block(&format!("b{row}.{column}"), DVec2::ONE, 1.0, at(x, f64::from(row) + 0.5)));
+            bodies.push(Body::block(
+                &format!("b{row}.{column}"),
+                DVec2::ONE,
+                1.0,
+                at(x, f64::from(row) + 0.5),
+            ));
         }
     }
     rough_pile(&format!("pyramid_{rows}"), "a pyramid of boxes at rest", bodies, 5.0)
@@ -93,9 +98,11 @@ fn pyramid(rows: u32) -> Scene {
 
 fn tower() -> Scene {
     let mut bodies = vec![floor(20.0)];
-    bodies.extend((0..100).map(|index| {
-        Body::block(&format!("box {index}"), DVec2::ONE, 1.0, at(0.0, f64::from(index) + 0.5))
-    }));
+    bodies.extend(
+        (0..100).map(|index| {
+            Body::block(&format!("box {index}"), DVec2::ONE, 1.0, at(0.0, f64::from(index) + 0.5))
+        }),
+    );
     rough_pile("tower_100", "100 boxes stand on each other", bodies, 5.0)
 }
 
@@ -128,7 +135,13 @@ fn hopper() -> Scene {
         let (column, row) = (f64::from(index % 50), f64::from(index / 50));
         let radius = 0.09 + 0.02 * f64::from(index * 7 % 11) / 11.0;
         let place = DVec2::new(0.24 * (column - 24.5) + 0.05 * (row % 2.0), 9.5 + 0.24 * row);
-        bodies.push(Body::disc(&format!("disc {index}"), radius, radius * radius * 100.0, place, DVec2::ZERO));
+        bodies.push(Body::disc(
+            &format!("disc {index}"),
+            radius,
+            radius * radius * 100.0,
+            place,
+            DVec2::ZERO,
+        ));
     }
     rough_pile("hopper_2000", "2,000 discs run through the outlet of a hopper", bodies, 5.0)
 }
@@ -142,7 +155,11 @@ pub fn heaps(count: u32) -> Scene {
     let mut bodies = vec![floor(f64::from(boxes + 2) * 2.0 * width)];
     for place in 0..=boxes {
         let x = (f64::from(place) - 0.5 * f64::from(boxes)) * (width + 1.0) - 0.5;
-        bodies.push(Body::fixed(&format!("wall {place}"), Shape::Block { width: 1.0, height: 12.0 }, DVec2::new(x, 6.0)));
+        bodies.push(Body::fixed(
+            &format!("wall {place}"),
+            Shape::Block { width: 1.0, height: 12.0 },
+            DVec2::new(x, 6.0),
+        ));
     }
     for index in 0..count {
         let (home, own) = (index / per_box, index % per_box);

@@ -58,6 +58,7 @@ mod watch;
 mod zeno;
 
 pub use bodies::force_law::{ForceLaw, Snapshot, Wrench, Wrenches};
+pub(crate) use bodies::force_laws::ForceLaws;
 pub use bodies::squeezed::LARGEST_MASS_RATIO;
 pub use bodies::trajectory::{FreeMotion, Trajectory};
 pub use books::counts::Counts;
@@ -66,17 +67,16 @@ pub use books::report::{ContactChanges, Handled, ImpactReport, RowForce, RowRepo
 pub use error::{AdvanceError, Between};
 pub use event::intervention::VelocityChange;
 pub(crate) use event::intervention::check_finite;
-pub(crate) use parts::check_bodies_of_force_law;
+pub(crate) use forest::Forest;
 pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
+pub(crate) use parts::check_bodies_of_force_law;
 pub use parts::{BodyPart, PartsError, RigidParts, UniformMotion};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
-pub(crate) use bodies::force_laws::ForceLaws;
-pub(crate) use forest::Forest;
-pub use surface::{PairSurface, Surface};
 pub use settings::{ExtraAcceleration, RegionSteps, RigidSettings, StepControl};
+pub use surface::{PairSurface, Surface};
 pub use system::RigidSystem;
 #[cfg(feature = "save")]
 pub use system::SavedSystem;

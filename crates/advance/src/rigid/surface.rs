@@ -74,8 +74,20 @@ mod tests {
 
     #[test]
     fn pairs_mix_as_the_fields_say() {
-        let rough = Surface { friction: 0.9, static_friction: 1.6, velocity: 2.0, rolling_resistance: 0.1, tangential_elasticity: 0.5 };
-        let plain = Surface { friction: 0.4, static_friction: 0.9, velocity: -1.0, rolling_resistance: 0.3, tangential_elasticity: 0.2 };
+        let rough = Surface {
+            friction: 0.9,
+            static_friction: 1.6,
+            velocity: 2.0,
+            rolling_resistance: 0.1,
+            tangential_elasticity: 0.5,
+        };
+        let plain = Surface {
+            friction: 0.4,
+            static_friction: 0.9,
+            velocity: -1.0,
+            rolling_resistance: 0.3,
+            tangential_elasticity: 0.2,
+        };
         let pair = PairSurface::of([&rough, &plain]);
         assert!((pair.kinetic - 0.6).abs() < 1e-15 && (pair.sticking - 1.2).abs() < 1e-15);
         assert_eq!((pair.speeds, pair.rolling, pair.tangential_elasticity), ([2.0, -1.0], 0.3, 0.2));

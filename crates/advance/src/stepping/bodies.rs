@@ -75,6 +75,8 @@ pub(super) fn farthest(reach: f64, [x, y, turn]: Motion3) -> f64 {
 pub(super) struct Bodies {
     pub(super) natures: Vec<Nature>,
     pub(super) courses: Vec<Course>,
+    /// Inverse inertia of each body in a step: damping resists an impulse by the half of the step in which it has acted.
+    in_step: Vec<InverseInertia>,
     /// Bound on the way [m] that any point of each body has gone in all.
     pub(super) ways: Vec<f64>,
     /// Motions at the start of the present step: poses there, velocities as they are known before it.
@@ -82,14 +84,21 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    pub(super) fn new(parts: Vec<BodyPart>) -> Self {
+    /// The bodies of a system whose steps last `span` [s].
+    pub(super) fn new(parts: Vec<BodyPart>, span: f64) -> Self {
         let courses = parts.iter().map(|BodyPart { body, state, motion, .. }| {
             let velocity = match motion {
                 Some(motion) => [motion.velocity.x, motion.velocity.y, motion.angular_velocity],
                 None if body.is_fixed() => [0.0; 3],
                 None => [state.velocity.x, state.velocity.y, state.angular_velocity],
             };
-            Course { position: state.position, angle: state.angle, middle: velocity, smooth: velocity, ..Course::default() }
+            Course {
+                position: state.position,
+                angle: state.angle,
+                middle: velocity,
+                smooth: velocity,
+                ..Course::default()
+            }
         });
         let courses: Vec<Course> = courses.collect();
         let movings = courses.iter().map(|course| Moving::from(&course.state_at(0.0, 0.0))).collect();
@@ -97,7 +106,19 @@ impl Bodies {
             let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
             Nature { reach: body.shape.reach(), body, free_motion, surface }
         });
-        Self { ways: vec![0.0; courses.len()], natures: natures.collect(), courses, movings }
+        let natures: Vec<Nature> = natures.collect();
+        let in_step = natures.iter().map(|Nature { body, free_motion, .. }| InverseInertia {
+            inverse_mass: body.inverse_mass / (1.0 + 0.5 * span * free_motion.linear_rate),
+            inverse_moment: body.inverse_moment / (1.0 + 0.5 * span * free_motion.angular_rate),
+        });
+        Self { ways: vec![0.0; courses.len()], in_step: in_step.collect(), natures, courses, movings }
+    }
+
+    /// Inverse inertia of a body, or of the background, against the impulses of a step.
+    #[inline]
+    pub(super) fn inertia_in_step(&self, place: usize) -> InverseInertia {
+        let none = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        self.in_step.get(place).copied().unwrap_or(none)
     }
 
     #[inline]
@@ -126,15 +147,11 @@ impl Bodies {
         InverseInertia { inverse_mass, inverse_moment }
     }
 
-    /// A body, or the background, at a velocity.
+    /// A body, or the background, at a velocity in a step.
     #[inline]
     pub(super) fn mover(&self, place: usize, velocity: Motion3) -> Mover {
-        match self.natures.get(place) {
-            Some(Nature { body: Body { inverse_mass, inverse_moment, .. }, .. }) => {
-                Mover { velocity, inverse_mass: *inverse_mass, inverse_moment: *inverse_moment }
-            }
-            None => Mover { velocity, ..Mover::default() },
-        }
+        let InverseInertia { inverse_mass, inverse_moment } = self.inertia_in_step(place);
+        Mover { velocity, inverse_mass, inverse_moment }
     }
 
     /// Sets a place anew, with the velocity that is known there.
@@ -163,7 +180,11 @@ impl Bodies {
     /// Kinetic energy [J] of a body at given velocities.
     pub(super) fn kinetic_energy(&self, body: usize, [x, y, spin]: Motion3) -> f64 {
         let Body { inverse_mass, inverse_moment, .. } = self.natures[body].body;
-        if inverse_mass > 0.0 { 0.5 * ((x * x + y * y) / inverse_mass + spin * spin / inverse_moment) } else { 0.0 }
+        if inverse_mass > 0.0 {
+            0.5 * ((x * x + y * y) / inverse_mass + spin * spin / inverse_moment)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -174,7 +195,12 @@ mod tests {
     #[test]
     fn a_step_under_constant_acceleration_is_a_parabola() {
         let (v, a, span) = (3.0, -10.0, 0.5);
-        let course = Course { middle: [v + 0.5 * span * a, 0.0, 0.0], smooth: [v + 0.5 * span * a, 0.0, 0.0], acceleration: [a, 0.0, 0.0], ..Course::default() };
+        let course = Course {
+            middle: [v + 0.5 * span * a, 0.0, 0.0],
+            smooth: [v + 0.5 * span * a, 0.0, 0.0],
+            acceleration: [a, 0.0, 0.0],
+            ..Course::default()
+        };
         for share in 0..=4 {
             let since = 0.25 * f64::from(share) * span;
             let state = course.state_at(since, span);

@@ -4,7 +4,7 @@
 //! every time within.
 
 use crate::rigid::{Counts, Ledger};
-use crate::stepping::bodies::{Motion3, Nature};
+use crate::stepping::bodies::{Bodies, Motion3, Nature};
 use crate::stepping::rows::{Rows, Source};
 
 /// Sums up to the middle of the present step, and powers [W] within it.
@@ -45,13 +45,22 @@ impl StepBooks {
 
     /// Books what contacts, connectors and damping did to a body in a time `span` [s] that ends in the middle of the step. It went
     /// at a mean velocity, and has changed by `pushed` beyond what forces without contacts do.
-    pub(super) fn book_body(&mut self, nature: &Nature, mean: Motion3, pushed: Motion3, span: f64, is_present: bool) {
-        let inverse = [nature.body.inverse_mass, nature.body.inverse_mass, nature.body.inverse_moment];
-        let free = &nature.free_motion;
-        let rates = [free.linear_rate, free.linear_rate, free.angular_rate];
+    pub(super) fn book_body(
+        &mut self,
+        (bodies, place): (&Bodies, usize),
+        mean: Motion3,
+        pushed: Motion3,
+        span: f64,
+        is_present: bool,
+    ) {
+        let Nature { body, free_motion, .. } = &bodies.natures[place];
+        let in_step = bodies.inertia_in_step(place);
+        let against_pushes = [in_step.inverse_mass, in_step.inverse_mass, in_step.inverse_moment];
+        let inverse = [body.inverse_mass, body.inverse_mass, body.inverse_moment];
+        let rates = [free_motion.linear_rate, free_motion.linear_rate, free_motion.angular_rate];
         let (mut work, mut damped) = (0.0, 0.0);
         for k in 0..3 {
-            work += mean[k] * pushed[k] / inverse[k];
+            work += mean[k] * pushed[k] / against_pushes[k];
             damped -= rates[k] * mean[k] * mean[k] / inverse[k];
         }
         self.ledger.steps += work;
@@ -87,7 +96,9 @@ impl StepBooks {
         for row in &rows.all {
             match row.source {
                 Source::Contact { .. } if row.touches => self.counts.note_gap(row.gap + target_gap),
-                Source::Connector { .. } if row.is_bilateral => self.counts.note_connector_error(row.gap.abs()),
+                Source::Connector { .. } if row.is_bilateral => {
+                    self.counts.note_connector_error(row.gap.abs())
+                }
                 _ => {}
             }
         }

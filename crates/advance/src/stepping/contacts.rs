@@ -92,7 +92,9 @@ pub(super) fn find_contacts(
     // What pressed and is gone has become one of those that are new.
     for old in gone.iter().filter(|old| old.presses) {
         let heirs = contacts.iter_mut().filter(|contact| {
-            !contact.presses && contact.arrival.is_none() && contact.features.iter().zip(old.features).any(|(&own, other)| own == other)
+            !contact.presses
+                && contact.arrival.is_none()
+                && contact.features.iter().zip(old.features).any(|(&own, other)| own == other)
         });
         if let Some(heir) = heirs.min_by_key(|heir| heir.features) {
             let Contact { features, .. } = *heir;
@@ -145,7 +147,9 @@ fn drop_doubles(found: &mut Vec<Found>, nearness: &Nearness) {
         let double = (0..kept).find(|&other| {
             let other = &found[other].sample;
             let (p, q) = (normal(&sample), normal(other));
-            p.dot(q) > 0.0 && p.perp_dot(q).abs() < ONE_PLACE && (middle(&sample) - middle(other)).length() <= near
+            p.dot(q) > 0.0
+                && p.perp_dot(q).abs() < ONE_PLACE
+                && (middle(&sample) - middle(other)).length() <= near
         });
         match double {
             Some(other) if sample.gap < found[other].sample.gap => found[other] = found[next],

@@ -2,7 +2,10 @@
 
 use crate::stepping::rows::{Line, Mover, Roll, Row};
 use crate::stepping::sweeps::Problem as Island;
-use halfgap_contact::{InverseInertia, Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver, WarmStart};
+use halfgap_contact::{
+    InverseInertia, Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver,
+    WarmStart,
+};
 
 /// Number of times that contacts may give way to the lesser coefficient: each of them does once.
 const GIVING_WAY: usize = 8;
@@ -10,6 +13,15 @@ const GIVING_WAY: usize = 8;
 /// Residual up to which a solution is exact, in units of the load [-]: contacts that stick side by side contradict each other by the
 /// rounding of coordinates over the length of a step. With 1e-12 a block on a slope at 1/960 s has no solution.
 const RESIDUAL: f64 = 1e-9;
+
+/// How much is done for a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// All that is known.
+    Full,
+    /// Forces are near those of the solution, or none is found.
+    Near,
+}
 
 /// The solver with its buffers.
 #[derive(Clone, Debug)]
@@ -45,14 +57,20 @@ impl Default for Exact {
 impl Exact {
     /// Finds the impulses of the rows of an island for velocities without them, beginning with those that the rows have. On success
     /// the rows have the impulses and the velocities include them; otherwise nothing has changed.
-    pub(super) fn solve(&mut self, island: &mut Island<'_>, members: &[u32], (span, slack): (f64, f64)) -> bool {
+    pub(super) fn solve(
+        &mut self,
+        island: &mut Island<'_>,
+        members: &[u32],
+        (span, slack): (f64, f64),
+        effort: Effort,
+    ) -> bool {
         self.pose(island, members, (span, slack));
-        let mut is_solved = self.run();
+        let mut is_solved = self.run(effort);
         for _ in 0..GIVING_WAY {
             if !(is_solved && self.give_way(island)) {
                 break;
             }
-            is_solved = self.run();
+            is_solved = self.run(effort);
         }
         if is_solved {
             self.take(island);
@@ -60,9 +78,13 @@ impl Exact {
         is_solved
     }
 
-    fn run(&mut self) -> bool {
+    fn run(&mut self, effort: Effort) -> bool {
         self.warm.guess_forces(self.start.iter().map(|&force| Some(force)));
-        let is_solved = self.modes.solve_from(&self.problem, &self.warm, &mut self.solution).is_ok();
+        let outcome = match effort {
+            Effort::Full => self.modes.solve_from(&self.problem, &self.warm, &mut self.solution),
+            Effort::Near => self.modes.solve_near(&self.problem, &self.warm, &mut self.solution),
+        };
+        let is_solved = outcome.is_ok();
         if is_solved {
             self.start.clone_from(&self.solution.force);
         }

@@ -1,9 +1,9 @@
 //! Impacts at the start of a step: contacts that have come fast, with all that touches them, by the impact law.
 
 use crate::stepping::bodies::{Bodies, Motion3};
-use crate::stepping::rows::Row;
+use crate::stepping::rows::{Mover, Row};
 use crate::stepping::settings::SteppingSettings;
-use halfgap_contact::{CollisionRow, FrictionRow, Impact, ImpactError, RowKind};
+use halfgap_contact::{CollisionRow, FrictionRow, Impact, ImpactError, InverseInertia, RowKind};
 
 /// The impact law with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -67,7 +67,12 @@ impl Impacts {
         for (place, &row) in self.listed.iter().enumerate() {
             let row = &rows[row as usize];
             let [a, b] = row.ends();
-            let [mut p, mut q] = row.ends().map(|place| bodies.mover(place, velocities[place]));
+            let ids = row.bodies(bodies.count());
+            let [mut p, mut q] = ids.map(|body| {
+                let InverseInertia { inverse_mass, inverse_moment } = bodies.inertia(body);
+                let velocity = velocities[if body.is_world() { bodies.count() } else { body.index() }];
+                Mover { velocity, inverse_mass, inverse_moment }
+            });
             row.normal.push(&mut p, &mut q, self.impact.impulses()[place]);
             row.slip.line.push(&mut p, &mut q, self.impact.friction_impulse(place));
             (velocities[a], velocities[b]) = (p.velocity, q.velocity);

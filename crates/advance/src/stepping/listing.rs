@@ -10,6 +10,10 @@ use crate::stepping::ties::Ties;
 use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned, visit_near_features};
 use halfgap_geometry::{GapKind, GapSample};
 
+/// Angle [rad] by which a body, or a normal, may turn in a step so that gaps are predicted to second order: beyond it the terms of
+/// that order are larger than what they correct, and what spins would spin faster and faster.
+const STRAIGHT: f64 = 0.5;
+
 /// Coefficients of the relative turning of two bodies.
 const TURNING: [f64; 6] = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0];
 
@@ -18,6 +22,10 @@ const TURNING: [f64; 6] = [0.0, 0.0, 1.0, 0.0, 0.0, -1.0];
 const MARGIN: f64 = 0.05;
 /// Overlap that is looked for, as a multiple of the deepest of a pair in the last step [-]: other features may overlap a little more.
 const DEEPER: f64 = 1.5;
+
+/// Overlap beyond which two bodies go through each other, as a fraction of the smaller reach [-]: nobody knows to which side they belong.
+/// Without a bound, boxes of a tower that falls at a coarse residual take each other's far sides for near ones.
+const DEEPEST: f64 = 0.3;
 
 /// What the listing works with.
 #[derive(Clone, Debug, Default)]
@@ -60,7 +68,13 @@ impl Listing {
             return;
         };
         self.ways.clear();
-        self.ways.extend(bodies.natures.iter().zip(free).map(|(nature, &free)| lengths.span * farthest(nature.reach, free)));
+        self.ways.extend(
+            bodies
+                .natures
+                .iter()
+                .zip(free)
+                .map(|(nature, &free)| lengths.span * farthest(nature.reach, free)),
+        );
         for place in (0..bodies.count()).filter(|&place| !sleep.is_asleep(place)) {
             pairs.cover(bodies, BodyId::from_index(place), self.ways[place]);
         }
@@ -117,14 +131,19 @@ impl Listing {
     ) -> bool {
         let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
         let way: f64 = (0..2).map(|side| if sleeps[side] { 0.0 } else { self.ways[places[side]] }).sum();
-        let nearness = Nearness { reach: way + lengths.target_gap, depth: pair.deepest + way, overrun: lengths.slack };
+        let nearness =
+            Nearness { reach: way + lengths.target_gap, depth: pair.deepest + way, overrun: lengths.slack };
         let still = [0.0; 3];
         let [p, q] = [0, 1].map(|side: usize| if sleeps[side] { &still } else { &free[places[side]] });
         let mut comes = false;
         visit_near_features(sides, &nearness, &mut |_, sample| {
             let (a, b) = if sample.primary_is_a { (0, 1) } else { (1, 0) };
             let motions = [sides[a].1, sides[b].1];
-            let line = Line::new(GapKinematics::of(sample, motions[0], motions[1]).jacobian, [BodyId::WORLD; 2].map(|body| bodies.inertia(body)), 0.0);
+            let line = Line::new(
+                GapKinematics::of(sample, motions[0], motions[1]).jacobian,
+                [BodyId::WORLD; 2].map(|body| bodies.inertia(body)),
+                0.0,
+            );
             let rate = if a == 0 { line.rate(p, q) } else { line.rate(q, p) };
             comes |= sample.gap - lengths.target_gap + lengths.span * rate < 0.0;
         });
@@ -132,7 +151,14 @@ impl Listing {
     }
 
     /// Lists the contacts of a pair.
-    fn list_pair(&mut self, bodies: &Bodies, pair: &mut Pair, index: usize, lengths: Lengths, rows: &mut Rows) {
+    fn list_pair(
+        &mut self,
+        bodies: &Bodies,
+        pair: &mut Pair,
+        index: usize,
+        lengths: Lengths,
+        rows: &mut Rows,
+    ) {
         let places = pair.bodies.map(BodyId::index);
         let way = self.ways[places[0]] + self.ways[places[1]];
         let gone = bodies.ways[places[0]] + bodies.ways[places[1]];
@@ -146,7 +172,8 @@ impl Listing {
             let nearness = Nearness {
                 reach: reach + lengths.target_gap,
                 // What overlaps more has done so before, or it would lie behind another edge.
-                depth: way + DEEPER * pair.deepest + lengths.slack,
+                depth: (way + DEEPER * pair.deepest + lengths.slack)
+                    .min(DEEPEST * reaches[0].min(reaches[1])),
                 overrun: lengths.slack,
             };
             find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
@@ -176,17 +203,24 @@ fn add_contact(
     let sides = if sample.primary_is_a { [0, 1] } else { [1, 0] };
     let ids = sides.map(|side: usize| of_pair[side]);
     let [primary, normal] = ids.map(|body| &bodies.movings[body.index()]);
-    let inertia = ids.map(|body| bodies.inertia(body));
+    let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
     let kinematics = GapKinematics::of(sample, primary, normal);
     let Lengths { span, target_gap, slack } = lengths;
     let gap = sample.gap - target_gap;
+    // What turns far within a step is on no parabola.
+    let turn = kinematics
+        .normal_rate
+        .length()
+        .max(primary.angular_velocity.abs())
+        .max(normal.angular_velocity.abs());
+    let bend = if span * turn <= STRAIGHT { 0.5 * span } else { 0.0 };
     let mut row = Row {
         places: ids.map(|body| body.0),
         is_bilateral: false,
         presses: contact.presses,
         touches: contact.presses || gap <= slack,
         roll: None,
-        normal: Line::new(kinematics.jacobian, inertia, gap.max(0.0) / span + 0.5 * span * kinematics.gamma),
+        normal: Line::new(kinematics.jacobian, inertia, gap.max(0.0) / span + bend * kinematics.gamma),
         slip: Slip::default(),
         gap,
         gamma: kinematics.gamma,
@@ -198,8 +232,9 @@ fn add_contact(
     };
     row.normal.impulse = span * contact.forces[0];
     if surface.has_friction() {
-        let features =
-            sides.map(|side: usize| bodies.natures[of_pair[side].index()].body.shape.feature(contact.features[side]));
+        let features = sides.map(|side: usize| {
+            bodies.natures[of_pair[side].index()].body.shape.feature(contact.features[side])
+        });
         let radii = features.map(|feature| feature.radius());
         let touch = Touch { sample, radii, bodies: [primary, normal], kept_gap: target_gap };
         let speeds = sides.map(|side: usize| surface.speeds[side]);
@@ -207,7 +242,7 @@ fn add_contact(
         let running = speeds[0] + speeds[1];
         let sticking = if contact.hold == Hold::Slips { surface.kinetic } else { surface.sticking };
         row.slip = Slip {
-            line: Line::new(tangent.jacobian, inertia, 0.5 * span * tangent.gamma - running),
+            line: Line::new(tangent.jacobian, inertia, bend * tangent.gamma - running),
             bounds: [sticking, surface.kinetic],
             off: way_off(contact, &touch, span * running),
             running,
@@ -261,7 +296,7 @@ fn list_ties(bodies: &Bodies, ties: &Ties, sleep: &Sleep, lengths: Lengths, rows
         if ids.iter().all(|&body| bodies.is_fixed(body) || sleep.is_asleep(body.index())) {
             continue;
         }
-        let inertia = ids.map(|body| bodies.inertia(body));
+        let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
         let is_bilateral = connector.is_bilateral();
         for direction in 0..connector.row_count() {
             let sample = ties.measure(bodies, index, direction);

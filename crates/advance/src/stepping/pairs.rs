@@ -78,7 +78,8 @@ impl Pairs {
         let nature = &bodies.natures[body.index()];
         let margin = way + MARGIN * nature.reach;
         self.boxed_until[body.index()] = bodies.ways[body.index()] + margin;
-        let boxed = nature.body.shape.bounds_at(&bodies.movings[body.index()].pose).grown(margin + self.target_gap);
+        let boxed =
+            nature.body.shape.bounds_at(&bodies.movings[body.index()].pose).grown(margin + self.target_gap);
         self.broad.set(body, boxed);
         if !bodies.is_fixed(body) {
             self.drop_far(bodies, body, &boxed);
@@ -118,7 +119,14 @@ impl Pairs {
         let natures: [&Nature; 2] = [a, b].map(|body| &bodies.natures[body.index()]);
         let surfaces: [&Surface; 2] = natures.map(|nature| &nature.surface);
         let elasticity = natures[0].body.elasticity.min(natures[1].body.elasticity);
-        self.all.push(Pair { bodies: [a, b], surface: PairSurface::of(surfaces), elasticity, contacts: Vec::new(), deepest: 0.0, known_until: 0.0 });
+        self.all.push(Pair {
+            bodies: [a, b],
+            surface: PairSurface::of(surfaces),
+            elasticity,
+            contacts: Vec::new(),
+            deepest: 0.0,
+            known_until: 0.0,
+        });
         for body in [a, b].into_iter().filter(|&body| !bodies.is_fixed(body)) {
             self.of_body[body.index()].push(place);
         }

@@ -53,7 +53,9 @@ pub(super) fn project(
         if shift != [0.0; 3] {
             let nature = &bodies.natures[place];
             let acceleration = nature.free_motion.acceleration;
-            books.book_projection(-(acceleration.x * shift[0] + acceleration.y * shift[1]) / nature.body.inverse_mass);
+            books.book_projection(
+                -(acceleration.x * shift[0] + acceleration.y * shift[1]) / nature.body.inverse_mass,
+            );
             bodies.shift(place, shift);
         }
     }

@@ -101,7 +101,9 @@ impl Sleep {
         let drives = |row: &Row| {
             row.slip.running != 0.0
                 || row.ends().iter().any(|&place| {
-                    place < bodies.count() && bodies.natures[place].body.is_fixed() && bodies.courses[place].middle != [0.0; 3]
+                    place < bodies.count()
+                        && bodies.natures[place].body.is_fixed()
+                        && bodies.courses[place].middle != [0.0; 3]
                 })
         };
         if list.iter().map(|&row| &rows[row as usize]).any(drives) {

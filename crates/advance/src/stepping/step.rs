@@ -15,10 +15,10 @@
 //! (1983) (RATTLE); D. E. Stewart, J. C. Trinkle, Int. J. Numer. Meth. Engng. 39 (1996) (friction in the problem of velocities).
 
 use crate::rigid::ForceLaws;
-use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::books::StepBooks;
 use crate::stepping::contacts::Hold;
-use crate::stepping::exact::Exact;
+use crate::stepping::exact::{Effort, Exact};
 use crate::stepping::impacts::Impacts;
 use crate::stepping::islands::Islands;
 use crate::stepping::kicks::{Kicks, kicked};
@@ -32,10 +32,13 @@ use crate::stepping::sweeps::Problem;
 use crate::stepping::ties::Ties;
 use halfgap_contact::ImpactError;
 
-/// Rounds of sweeps over an island that is too large, or has too many modes, for an exact solution.
+/// Largest number of rounds of sweeps; what they leave is corrected in the steps that follow.
 const MOST_ROUNDS: u32 = 100;
-/// Largest number of rows of an island that is solved exactly.
-const LARGEST_EXACT: usize = 60;
+/// Number of rows up to which an island is solved exactly, by whatever it takes.
+const LARGEST_SMALL: usize = 60;
+/// Number of rows up to which an island in which nothing is faster than forces make it in a step is solved exactly, if the forces of the
+/// last step tell its modes: a tower stands, where sweeps would let each of its contacts close a little.
+const LARGEST_QUIET: usize = 1000;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 const SLOW_STEPS: f64 = 2.0;
 
@@ -57,7 +60,8 @@ pub(super) struct Stepper {
     kicks: Kicks,
     listing: Listing,
     pub(super) rows: Rows,
-    /// Rate [m/s] that is as good as none.
+    /// Speed that forces give in a step, and rate that is as good as none [m/s].
+    fall: f64,
     residual: f64,
     pub(super) islands: Islands,
     exact: Exact,
@@ -108,7 +112,8 @@ impl Stepper {
         }
         books.note_gaps(&self.rows, target_gap);
         self.islands.find(bodies, |place| !sleep.is_asleep(place), &self.rows.all);
-        self.residual = settings.residual * span * self.kicks.fastest();
+        self.fall = span * self.kicks.fastest();
+        self.residual = settings.residual * self.fall;
         for island in 0..self.islands.count() {
             self.advance_island(scene, (settings, span), from, island, books)?;
         }
@@ -119,7 +124,10 @@ impl Stepper {
     fn find_free(&mut self, bodies: &Bodies, span: f64, from: From) {
         self.node.clear();
         self.node.extend(
-            bodies.movings.iter().map(|moving| [moving.velocity.x, moving.velocity.y, moving.angular_velocity]),
+            bodies
+                .movings
+                .iter()
+                .map(|moving| [moving.velocity.x, moving.velocity.y, moving.angular_velocity]),
         );
         self.node.push([0.0; 3]);
         self.free.clear();
@@ -155,6 +163,10 @@ impl Stepper {
         let is_split = is_struck || from == From::Start;
         let kick = if is_split { 0.5 * span } else { span };
         let (members, list) = self.islands.get(island);
+        let is_quiet = members.iter().all(|&body| {
+            let place = body as usize;
+            farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= self.fall
+        });
         if !list.is_empty() {
             let Self { rows, rolling, .. } = self;
             rolling.clear();
@@ -167,8 +179,21 @@ impl Stepper {
                 }
             }
             books.note_solve();
-            let mut problem = Problem { rows: &mut rows.all, list, rolls: &mut rows.rolls, rolling, movers: &mut self.movers };
-            solve(&mut problem, &mut self.exact, members, (span, settings.slack), self.residual);
+            let mut problem = Problem {
+                rows: &mut rows.all,
+                list,
+                rolls: &mut rows.rolls,
+                rolling,
+                movers: &mut self.movers,
+            };
+            solve(
+                &mut problem,
+                &mut self.exact,
+                members,
+                (from, is_quiet),
+                (span, settings.slack),
+                self.residual,
+            );
         }
         for &body in members {
             self.smooth[body as usize].velocity = self.movers[body as usize].velocity;
@@ -182,9 +207,21 @@ impl Stepper {
             touching.clear();
             touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
             rolling.retain(|&roll| rows.all[rows.rolls[roll as usize].row as usize].touches);
-            let mut problem =
-                Problem { rows: &mut rows.all, list: touching, rolls: &mut rows.rolls, rolling, movers: &mut self.smooth };
-            solve(&mut problem, &mut self.exact, members, (span, settings.slack), self.residual);
+            let mut problem = Problem {
+                rows: &mut rows.all,
+                list: touching,
+                rolls: &mut rows.rolls,
+                rolling,
+                movers: &mut self.smooth,
+            };
+            solve(
+                &mut problem,
+                &mut self.exact,
+                members,
+                (from, is_quiet),
+                (span, settings.slack),
+                self.residual,
+            );
         }
         self.set_off(&mut scene.bodies, island, kick, is_split, books);
         let (_, list) = self.islands.get(island);
@@ -193,8 +230,7 @@ impl Stepper {
         }
         let Scene { bodies, laws, sleep, .. } = scene;
         let (members, list) = self.islands.get(island);
-        let fall = span * self.kicks.fastest();
-        sleep.settle(bodies, laws, (members, &self.rows.all, list), (self.residual, fall));
+        sleep.settle(bodies, laws, (members, &self.rows.all, list), (self.residual, self.fall));
         Ok(())
     }
 
@@ -220,7 +256,7 @@ impl Stepper {
                 let (before, node) = (course.smooth, self.node[body as usize]);
                 let mean: Motion3 = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
                 let pushed = course.pushed.map(|acceleration| 0.5 * span * acceleration);
-                books.book_body(&bodies.natures[body as usize], mean, pushed, 0.5 * span, false);
+                books.book_body((bodies, body as usize), mean, pushed, 0.5 * span, false);
                 self.means[body as usize] = mean;
             }
             self.book_laws(members, 0.5 * span, false, books);
@@ -231,8 +267,13 @@ impl Stepper {
         };
         let before = energy(&self.node);
         books.note_kinetic(before);
-        let outcome =
-            self.impacts.resolve(bodies, (&self.rows.all, list), &mut self.node, (settings, slow), books.counts().impacts);
+        let outcome = self.impacts.resolve(
+            bodies,
+            (&self.rows.all, list),
+            &mut self.node,
+            (settings, slow),
+            books.counts().impacts,
+        );
         outcome.map_err(|source| StepError { bodies: members.to_vec(), source })?;
         books.book_impact(energy(&self.node) - before);
         for &body in members {
@@ -255,7 +296,12 @@ impl Stepper {
     }
 
     /// Speed [m/s] that is slow in an island in which something has come faster; `None` if nothing has.
-    fn slow_speed(&self, list: &[u32], (settings, span): (&SteppingSettings, f64), from: From) -> Option<f64> {
+    fn slow_speed(
+        &self,
+        list: &[u32],
+        (settings, span): (&SteppingSettings, f64),
+        from: From,
+    ) -> Option<f64> {
         let mut slow = settings.rigid.tolerances.velocity_tol;
         let mut fastest = 0.0_f64;
         for &row in list {
@@ -293,7 +339,14 @@ impl Stepper {
     }
 
     /// Lets the bodies of an island go through the step with the velocities found.
-    fn set_off(&mut self, bodies: &mut Bodies, island: usize, kick: f64, is_split: bool, books: &mut StepBooks) {
+    fn set_off(
+        &mut self,
+        bodies: &mut Bodies,
+        island: usize,
+        kick: f64,
+        is_split: bool,
+        books: &mut StepBooks,
+    ) {
         let (members, _) = self.islands.get(island);
         for &body in members {
             let place = body as usize;
@@ -306,7 +359,7 @@ impl Stepper {
             course.pushed = std::array::from_fn(|k| (smooth[k] - free[k]) / kick);
             let mean: Motion3 = std::array::from_fn(|k| 0.5 * (smooth[k] + before[k]));
             let pushed = std::array::from_fn(|k| smooth[k] - free[k]);
-            books.book_body(&bodies.natures[place], mean, pushed, kick, true);
+            books.book_body((bodies, place), mean, pushed, kick, true);
             self.means[place] = mean;
         }
         let (members, _) = self.islands.get(island);
@@ -326,10 +379,19 @@ fn solve(
     problem: &mut Problem<'_>,
     exact: &mut Exact,
     members: &[u32],
+    (from, is_quiet): (From, bool),
     (span, slack): (f64, f64),
     residual: f64,
 ) {
-    if problem.list.len() > LARGEST_EXACT || !exact.solve(problem, members, (span, slack)) {
+    let effort = match problem.list.len() {
+        0..=LARGEST_SMALL => Some(Effort::Full),
+        // Without forces to begin with.
+        0..=LARGEST_QUIET if from == From::Start => Some(Effort::Full),
+        0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
+        _ => None,
+    };
+    let is_solved = effort.is_some_and(|effort| exact.solve(problem, members, (span, slack), effort));
+    if !is_solved {
         problem.sweep(residual, MOST_ROUNDS);
     }
 }

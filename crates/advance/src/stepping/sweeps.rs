@@ -21,8 +21,8 @@ pub(super) struct Problem<'a> {
 
 impl Problem<'_> {
     /// Changes the velocities of an island, which do not include the impulses that its rows have, by better ones, until no rate
-    /// changes by more than `residual` [m/s], in at most so many rounds.
-    pub(super) fn sweep(&mut self, residual: f64, rounds: u32) {
+    /// changes by more than `residual` [m/s], in at most so many rounds. True if that is reached.
+    pub(super) fn sweep(&mut self, residual: f64, rounds: u32) -> bool {
         for &row in self.list {
             self.rows[row as usize].push_impulses(self.movers);
         }
@@ -43,7 +43,7 @@ impl Problem<'_> {
             }
             most = most.max(self.hold_rolling());
             if most <= residual {
-                return;
+                return true;
             }
             for &row in self.list.iter().rev() {
                 visit(&mut self.rows[row as usize], self.movers);
@@ -55,6 +55,7 @@ impl Problem<'_> {
             visit(&mut self.rows[row as usize], self.movers);
         }
         self.hold_rolling();
+        false
     }
 
     /// Goes on along the conjugate direction, given the square of the change in the round before; returns that of this one.

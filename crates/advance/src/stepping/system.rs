@@ -1,11 +1,11 @@
 //! Rigid bodies that are advanced by steps: what callers may ask and do.
 
+#[cfg(feature = "save")]
+use crate::rigid::PartsError;
 use crate::rigid::{
     AdvanceError, ContactChanges, Counts, ForceLaw, ForceLaws, Handled, ImpactReport, Ledger, RigidParts,
     RowForce, Snapshot, VelocityChange,
 };
-#[cfg(feature = "save")]
-use crate::rigid::PartsError;
 use crate::stepping::bodies::Bodies;
 use crate::stepping::books::StepBooks;
 use crate::stepping::pairs::Pairs;
@@ -49,10 +49,16 @@ impl SteppingSystem {
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;
         let count = bodies.len();
         let books = StepBooks::new(force_laws.len());
-        let bodies = Bodies::new(bodies);
+        let bodies = Bodies::new(bodies, settings.step);
         let laws = ForceLaws::new(force_laws, count, &Snapshot::new(start.seconds(), &bodies.movings));
         let sleep = Sleep::new(count);
-        let scene = Scene { sleep, bodies, pairs: Pairs::new(count, excluded, settings.rigid.tolerances.target_gap), ties: Ties::new(connectors), laws };
+        let scene = Scene {
+            sleep,
+            bodies,
+            pairs: Pairs::new(count, excluded, settings.rigid.tolerances.target_gap),
+            ties: Ties::new(connectors),
+            laws,
+        };
         let mut system = Self {
             settings,
             scene,
@@ -255,7 +261,11 @@ impl SteppingSystem {
     ///
     /// # Panics
     /// If there is no such body.
-    pub fn intervene(&mut self, time: Time, changes: &[VelocityChange]) -> Result<Option<Handled>, AdvanceError> {
+    pub fn intervene(
+        &mut self,
+        time: Time,
+        changes: &[VelocityChange],
+    ) -> Result<Option<Handled>, AdvanceError> {
         crate::rigid::check_finite(time, changes)?;
         self.interrupt(time, |scene, books| {
             for change in changes {
@@ -264,7 +274,8 @@ impl SteppingSystem {
                 }
                 let place = change.body.index();
                 let moving = &mut scene.bodies.movings[place];
-                let motion = |moving: &Moving| [moving.velocity.x, moving.velocity.y, moving.angular_velocity];
+                let motion =
+                    |moving: &Moving| [moving.velocity.x, moving.velocity.y, moving.angular_velocity];
                 let before = motion(moving);
                 moving.velocity += change.velocity;
                 moving.angular_velocity += change.angular_velocity;
@@ -279,7 +290,11 @@ impl SteppingSystem {
     ///
     /// # Errors
     /// A time that is not finite, or a law that names a body that is not there: nothing is done. An impact that cannot be resolved.
-    pub fn add_force_law(&mut self, time: Time, law: Arc<dyn ForceLaw>) -> Result<Option<Handled>, AdvanceError> {
+    pub fn add_force_law(
+        &mut self,
+        time: Time,
+        law: Arc<dyn ForceLaw>,
+    ) -> Result<Option<Handled>, AdvanceError> {
         crate::rigid::check_finite(time, &[])?;
         crate::rigid::check_bodies_of_force_law(self.force_laws().len(), law.as_ref(), self.body_count())?;
         self.interrupt(time, |scene, books| {

@@ -33,7 +33,8 @@ impl Ties {
     /// Notes where the points of rails and stops are now.
     pub(super) fn follow(&mut self, bodies: &Bodies) {
         for (connector, tie) in self.all.iter().zip(&mut self.memory) {
-            let (ConnectorKind::Rail { a, path } | ConnectorKind::RailStop { a, path, .. }) = &connector.kind else {
+            let (ConnectorKind::Rail { a, path } | ConnectorKind::RailStop { a, path, .. }) = &connector.kind
+            else {
                 continue;
             };
             let point = bodies.moving(a.body).pose.point_to_world(a.point);

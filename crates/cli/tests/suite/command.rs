@@ -200,7 +200,7 @@ fn what_is_not_supported_yet_is_refused_with_its_line() {
     let output = halfgap(&["run", &scene]);
     assert_eq!(output.status.code(), Some(2));
     insta::assert_snapshot!(folder.plain(&output.stderr), @r"
-    error: scene.toml:11: body[0].friction: friction is not supported by events yet: set `strategy = "steps"` in `[run]`
+    error: scene.toml:11: body[0].friction: friction is not supported by events yet: set `strategy` to `steps` in `[run]`
         |
      11 | friction = 0.5
         | ^

@@ -69,6 +69,22 @@ impl Modes {
         Ok(Self { settings, ..Self::default() })
     }
 
+    /// Solves a problem from forces near those of its answer, and gives up soon where their modes, corrected a few times, are not those
+    /// of an answer: for callers that have another way.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::Unsolved`].
+    pub fn solve_near(
+        &mut self,
+        problem: &Problem,
+        start: &WarmStart,
+        solution: &mut Solution,
+    ) -> Result<(), SolveError> {
+        self.load(problem, start);
+        if self.settle(problem, solution) { Ok(()) } else { Err(self.unsolved(solution)) }
+    }
+
     /// Accepts answers with a natural residual up to this.
     pub(crate) fn set_natural_residual(&mut self, natural_residual: f64) {
         self.settings.natural_residual = natural_residual;
@@ -80,13 +96,8 @@ impl Modes {
         warm: Option<&WarmStart>,
         solution: &mut Solution,
     ) -> Result<(), SolveError> {
-        self.iterations = 0;
-        self.rows.load(problem);
         if let Some(warm) = warm {
-            let lookup = warm.lookup(problem);
-            let earlier = |row: usize| lookup.find(row).map_or(0.0, |earlier| earlier.force);
-            self.force.clear();
-            self.force.extend((0..problem.len()).map(|row| earlier(row) * self.rows.scale[row]));
+            self.load(problem, warm);
             self.kept.clone_from(&self.force);
             if self.settle(problem, solution) {
                 return Ok(());
@@ -95,14 +106,31 @@ impl Modes {
             if self.descend(problem, solution) {
                 return Ok(());
             }
+        } else {
+            self.iterations = 0;
+            self.rows.load(problem);
         }
         self.force.clear();
         self.force.resize(problem.len(), 0.0);
         if self.descend(problem, solution) {
             return Ok(());
         }
+        Err(self.unsolved(solution))
+    }
+
+    /// Loads a problem, and the forces from which it is solved.
+    fn load(&mut self, problem: &Problem, warm: &WarmStart) {
+        self.iterations = 0;
+        self.rows.load(problem);
+        let lookup = warm.lookup(problem);
+        let earlier = |row: usize| lookup.find(row).map_or(0.0, |earlier| earlier.force);
+        self.force.clear();
+        self.force.extend((0..problem.len()).map(|row| earlier(row) * self.rows.scale[row]));
+    }
+
+    fn unsolved(&self, solution: &Solution) -> SolveError {
         let (residuals, iterations) = (solution.residuals, self.iterations);
-        Err(SolveError::Unsolved { method: Method::Modes, residuals, iterations })
+        SolveError::Unsolved { method: Method::Modes, residuals, iterations }
     }
 
     /// Goes on from the modes of the present forces. True if that ends with an accepted answer.

@@ -13,8 +13,8 @@ use crate::run_error::RunError;
 use crate::scene::{BodyData, EdgeData, FieldPath, ForceData, PathData, Scene, SceneError, ShapeData};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
-use halfgap_collision::{BodyId, BodyState};
 use halfgap_advance::rigid::{Surface, UniformMotion};
+use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
 
 impl World {

@@ -1,7 +1,7 @@
 //! The settings of a world from the table `[run]` of a scene.
 
 use crate::scene::{RunData, StrategyData};
-use crate::settings::{AdvanceBy, StepLength, ToleranceOverrides, WorldSettings};
+use crate::settings::{AdvanceBy, ToleranceOverrides, WorldSettings};
 use halfgap_advance::rigid::RemedySet;
 use halfgap_contact::ImpactOrder;
 
@@ -14,11 +14,7 @@ fn strategy(run: &RunData) -> AdvanceBy {
     match run.strategy {
         StrategyData::Events => AdvanceBy::Events,
         StrategyData::Steps => AdvanceBy::Steps {
-            step: match (run.time_step, run.tolerance) {
-                (Some(step), _) => StepLength::Fixed(step),
-                (None, Some(_)) => StepLength::ByTolerance,
-                (None, None) => StepLength::Fixed(DEFAULT_STEP),
-            },
+            step: run.time_step.unwrap_or(DEFAULT_STEP),
             residual: run.tolerance.unwrap_or(DEFAULT_RESIDUAL),
         },
     }
@@ -29,7 +25,11 @@ pub(crate) fn of_run(run: &RunData) -> WorldSettings {
     WorldSettings {
         start_time: run.start_time,
         duration: Some(run.duration),
-        tolerance: run.tolerance_or_default(),
+        // The gap that contacts keep costs steps nothing, however coarse they are.
+        tolerance: match run.strategy {
+            StrategyData::Events => run.tolerance_or_default(),
+            StrategyData::Steps => run.tolerance_or_default().min(DEFAULT_RESIDUAL),
+        },
         strategy: strategy(run),
         restitution: run.restitution,
         usual_speed: None,

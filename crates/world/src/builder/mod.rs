@@ -286,7 +286,11 @@ impl WorldBuilder {
         };
         let strategy = match self.settings.strategy {
             AdvanceBy::Events => Strategy::events(parts, settings, now),
-            AdvanceBy::Steps { step, residual } => Strategy::steps(parts, stepping_settings(settings, (step, residual), self.settings.restitution, &scales), now),
+            AdvanceBy::Steps { step, residual } => Strategy::steps(
+                parts,
+                stepping_settings(settings, (step, residual), self.settings.restitution, &scales),
+                now,
+            ),
         }
         .map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
@@ -548,7 +552,8 @@ fn centered(body: &BodySpec) -> Shape {
 /// Splits the specification of a body into the data that the world keeps and the part for the system.
 fn into_part((spec, law): (BodySpec, FreeMotion)) -> (Named, BodyPart) {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
-    let named = Named { name: spec.name.clone(), center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
+    let named =
+        Named { name: spec.name.clone(), center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
     let inverse =
         |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
     let body = Body {

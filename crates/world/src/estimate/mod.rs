@@ -88,7 +88,8 @@ pub fn estimate_error(
     let mut other = World::from_scene(&tighter)?;
     let other_plan = RunPlan { stops: Vec::new(), ..plan.clone() };
     let other_report = run(&mut other, &other_plan, progress);
-    let mut estimate = compare(world, &report.recording, &other_report.recording, scene.run.tolerance_or_default());
+    let mut estimate =
+        compare(world, &report.recording, &other_report.recording, scene.run.tolerance_or_default());
     estimate.tighter_tolerance = tighter.run.tolerance_or_default();
     estimate.target_gaps[1] = other.tolerances().target_gap;
     estimate.tighter_stopped = other_report.error;

@@ -87,8 +87,8 @@ mod tests {
 
     #[test]
     fn a_tolerance_of_rounding_stays() {
-        assert_eq!(run("tolerance = 1e-14").tolerance, 1e-15);
-        assert_eq!(run("tolerance = 1e-16").tolerance, 1e-16);
+        assert_eq!(run("tolerance = 1e-14").tolerance, Some(1e-15));
+        assert_eq!(run("tolerance = 1e-16").tolerance, Some(1e-16));
     }
 
     #[test]

@@ -2,13 +2,31 @@
 
 use super::error::SceneError;
 use super::field_path::FieldPath;
-use super::{BodyData, Scene, StrategyData};
+use super::{BodyData, RunData, Scene, StrategyData};
 
 /// Refuses the first field of the scene that is not supported yet.
 pub(super) fn check_supported(scene: &Scene) -> Result<(), SceneError> {
     let top = FieldPath::top();
+    check_run(&scene.run, &top.field("run"))?;
     for (index, body) in scene.bodies.iter().enumerate() {
         check_body(body, scene.run.strategy, &top.field("body").element(index))?;
+    }
+    Ok(())
+}
+
+/// Refuses what steps do not know yet.
+fn check_run(run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
+    if run.strategy == StrategyData::Events {
+        return Ok(());
+    }
+    if run.time_step.is_none() && run.tolerance.is_some() {
+        let message = "steps of a length chosen by the tolerance are not supported yet: give a `time_step`";
+        return Err(SceneError::new(at.field("tolerance"), message.to_owned()));
+    }
+    if !run.contacts {
+        let message =
+            "steps know no contacts without forces: leave `contacts` out, or set `strategy` to `events`";
+        return Err(SceneError::new(at.field("contacts"), message.to_owned()));
     }
     Ok(())
 }
@@ -18,7 +36,10 @@ fn check_body(body: &BodyData, strategy: StrategyData, at: &FieldPath) -> Result
     if let Some(motion) = &body.motion {
         let others = [("oscillate", motion.oscillate.is_some()), ("table", motion.table.is_some())];
         if let Some((field, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
-            return Err(unsupported(at.field("motion").field(field), "a motion other than at constant velocities is"));
+            return Err(unsupported(
+                at.field("motion").field(field),
+                "a motion other than at constant velocities is",
+            ));
         }
     }
     if strategy == StrategyData::Steps {
@@ -34,7 +55,8 @@ fn check_body(body: &BodyData, strategy: StrategyData, at: &FieldPath) -> Result
     ];
     match fields.into_iter().find(|&(_, is_given, _)| is_given) {
         Some((field, _, what)) => {
-            let message = format!("{what} is not supported by events yet: set `strategy = \"steps\"` in `[run]`");
+            let message =
+                format!("{what} is not supported by events yet: set `strategy` to `steps` in `[run]`");
             Err(SceneError::new(at.field(field), message))
         }
         None => Ok(()),

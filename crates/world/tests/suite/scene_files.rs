@@ -73,7 +73,7 @@ fn toml_and_json_say_the_same() {
 #[test]
 fn defaults_are_those_of_the_format() {
     let scene = Scene::parse(GOOD, SceneFormat::Toml).expect("a good scene");
-    assert_eq!(scene.run.tolerance, 1e-8);
+    assert_eq!(scene.run.tolerance_or_default(), 1e-8);
     assert_eq!(scene.run.output_step_or_default(), 0.005);
     assert!(scene.run.contacts && scene.run.collisions && scene.run.seed.is_none());
     assert_eq!((scene.bodies[0].elasticity, scene.bodies[0].friction), (1.0, 0.0));

@@ -58,6 +58,25 @@ pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Resul
     })
 }
 
+/// Refuses pairs that would stick less than they are held back when they slip: of each pair, the geometric means count.
+pub(super) fn validate_static_friction(bodies: &[BodyData], at: &At<'_>) -> Result<(), SceneError> {
+    let of = |body: &BodyData| [body.static_friction.unwrap_or(body.friction), body.friction];
+    let low = bodies.iter().enumerate().filter(|(_, body)| of(body)[0] < of(body)[1]);
+    for (index, body) in low {
+        let ([sticks, slips], others) = (of(body), bodies.iter().enumerate());
+        let mut others = others.filter(|&(other, _)| other != index);
+        let is_less = |&(_, other): &(usize, &BodyData)| sticks * of(other)[0] < slips * of(other)[1];
+        if let Some((_, other)) = others.find(is_less) {
+            let name = &other.name;
+            let message = format!(
+                "with {name:?} the pair would stick less than it is held back when it slips: give at least `friction`"
+            );
+            return Err(at.element(index).field("static_friction").error(message));
+        }
+    }
+    Ok(())
+}
+
 fn validate_motion(motion: &MotionData, body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {
     if !body.fixed {
         return Err(at.error("only a fixed body is moved: give it `fixed = true`, or a `velocity` instead"));

@@ -29,6 +29,7 @@ pub(super) fn validate_world(scene: &Scene) -> Result<(), SceneError> {
     validate_run(&scene.run)?;
     let names = bodies::collect_names(&scene.bodies, &top.field("body"))?;
     each(&top.field("body"), &scene.bodies, |body, at| bodies::validate(body, &names, at))?;
+    bodies::validate_static_friction(&scene.bodies, &top.field("body"))?;
     each(&top.field("connector"), &scene.connectors, |one, at| connectors::validate(one, &names, at))?;
     each(&top.field("force"), &scene.forces, |one, at| forces::validate(one, &names, at))
 }
