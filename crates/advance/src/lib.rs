@@ -43,7 +43,7 @@
 //! `time` is a clock that loses no digits, `queue` the event queue, `system` the trait of event-driven systems and the
 //! loop over it; [`ode`] integrates motions that have no closed form; `rigid` implements the trait for rigid bodies:
 //! free flight in closed form, groups coupled by contacts, connectors and force laws by an integrator, impacts and all
-//! changes of contact as events.
+//! changes of contact as events; `stepping` advances them by steps of one length instead, with friction.
 //!
 //! The examples `bouncing_point` (closed form) and `stick_slip` (integrated) are systems that need this crate alone,
 //! without its features.

@@ -5,7 +5,8 @@
 //! collide, rest and slide on each other; connectors ([`ConnectorSpec`]) tie them, forces ([`force`]) move them.
 //! [`Event`]s report impacts and contacts that begin or end; [`World::contact_forces`] gives the forces that hold,
 //! [`World::ledger`] where the energy went; [`World::intervene`] changes velocities from outside; `World::save` (feature
-//! `save`, on by default) writes a world to bytes, from which it goes on. Friction is not simulated yet.
+//! `save`, on by default) writes a world to bytes, from which it goes on. [`AdvanceBy::Steps`]
+//! advances it by steps instead, with friction, which events do not know yet.
 //!
 //! *Invariant*: this crate prints nothing, and leaves geometry, collisions, contacts and events to the layers below.
 //!

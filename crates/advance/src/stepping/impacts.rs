@@ -19,7 +19,7 @@ impl Impacts {
     pub(super) fn resolve(
         &mut self,
         bodies: &Bodies,
-        (rows, list): (&[Row], &[u32]),
+        (rows, list): (&mut [Row], &[u32]),
         velocities: &mut [Motion3],
         (settings, slow): (&SteppingSettings, f64),
         index: u64,
@@ -65,7 +65,8 @@ impl Impacts {
         }
         settings.rigid.impact_law.resolve(&mut self.impact, settings.rigid.order, index)?;
         for (place, &row) in self.listed.iter().enumerate() {
-            let row = &rows[row as usize];
+            let row = &mut rows[row as usize];
+            row.blow = self.impact.impulses()[place];
             let [a, b] = row.ends();
             let ids = row.bodies(bodies.count());
             let [mut p, mut q] = ids.map(|body| {
@@ -73,7 +74,7 @@ impl Impacts {
                 let velocity = velocities[if body.is_world() { bodies.count() } else { body.index() }];
                 Mover { velocity, inverse_mass, inverse_moment }
             });
-            row.normal.push(&mut p, &mut q, self.impact.impulses()[place]);
+            row.normal.push(&mut p, &mut q, row.blow);
             row.slip.line.push(&mut p, &mut q, self.impact.friction_impulse(place));
             (velocities[a], velocities[b]) = (p.velocity, q.velocity);
         }

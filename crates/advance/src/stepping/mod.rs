@@ -5,28 +5,33 @@
 //!
 //! `settings` · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
 //! remembered of where they touch · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `listing`: what contacts
-//! and connectors ask of velocities · `islands` · `exact`, `sweeps`: impulses · `impacts` · `projection`: back to the gaps · `sleep` · `step`:
-//! from one step to the next · `books` · `system`: what callers see.
+//! and connectors ask of velocities · `islands` · `exact`, `sweeps`: impulses · `impacts` · `report`: what callers are told · `projection`: back to the gaps · `sleep` · `memory` ·
+//! `striking`, `step`: from one step to the next · `books` · `system`, `intervention`: what callers see
+//! and change.
 
 mod bodies;
 mod books;
 mod contacts;
 mod exact;
 mod impacts;
+mod intervention;
 mod islands;
 mod kicks;
 mod listing;
+mod memory;
 mod pairs;
 mod projection;
+mod report;
 mod rows;
 mod settings;
 mod sleep;
 mod step;
+mod striking;
 mod sweeps;
 mod system;
 mod ties;
 
-pub use settings::SteppingSettings;
 #[cfg(feature = "save")]
-pub use system::SavedStepping;
+pub use intervention::SavedStepping;
+pub use settings::SteppingSettings;
 pub use system::SteppingSystem;

@@ -156,6 +156,8 @@ pub(super) struct Row {
     pub(super) elasticity: f64,
     /// Speed [m/s] of the impact at the start of the step, if there is one.
     pub(super) strikes: Option<f64>,
+    /// Impulse [N s] along the normal of the impact at the start of the step; 0 without one.
+    pub(super) blow: f64,
     /// Speed [m/s] of the impact at its end, if there is one.
     pub(super) arrives: Option<f64>,
     /// Point of the primary body at which the row acts [m].

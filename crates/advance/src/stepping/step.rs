@@ -14,33 +14,34 @@
 //! Sources: J.-P. Ryckaert, G. Ciccotti, H. J. C. Berendsen, J. Comput. Phys. 23 (1977) (SHAKE); H. C. Andersen, J. Comput. Phys. 52
 //! (1983) (RATTLE); D. E. Stewart, J. C. Trinkle, Int. J. Numer. Meth. Engng. 39 (1996) (friction in the problem of velocities).
 
-use crate::rigid::ForceLaws;
+use crate::rigid::{ForceLaws, ImpactReport};
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::books::StepBooks;
-use crate::stepping::contacts::Hold;
 use crate::stepping::exact::{Effort, Exact};
 use crate::stepping::impacts::Impacts;
 use crate::stepping::islands::Islands;
 use crate::stepping::kicks::{Kicks, kicked};
 use crate::stepping::listing::{Lengths, Listing};
+use crate::stepping::memory::remember;
 use crate::stepping::pairs::Pairs;
 use crate::stepping::projection::project;
-use crate::stepping::rows::{Line, Mover, Rows, Source};
+use crate::stepping::rows::{Line, Mover, Rows};
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
+use crate::stepping::striking::StepError;
 use crate::stepping::sweeps::Problem;
 use crate::stepping::ties::Ties;
-use halfgap_contact::ImpactError;
+use halfgap_collision::BodyId;
 
 /// Largest number of rounds of sweeps; what they leave is corrected in the steps that follow.
-const MOST_ROUNDS: u32 = 100;
+pub(super) const MOST_ROUNDS: u32 = 100;
 /// Number of rows up to which an island is solved exactly, by whatever it takes.
-const LARGEST_SMALL: usize = 60;
+pub(super) const LARGEST_SMALL: usize = 60;
 /// Number of rows up to which an island in which nothing is faster than forces make it in a step is solved exactly, if the forces of the
 /// last step tell its modes: a tower stands, where sweeps would let each of its contacts close a little.
 const LARGEST_QUIET: usize = 1000;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
-const SLOW_STEPS: f64 = 2.0;
+pub(super) const SLOW_STEPS: f64 = 2.0;
 
 /// What changes from step to step.
 #[derive(Clone, Debug)]
@@ -57,27 +58,30 @@ pub(super) struct Scene {
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Stepper {
-    kicks: Kicks,
+    pub(super) kicks: Kicks,
     listing: Listing,
     pub(super) rows: Rows,
     /// Speed that forces give in a step, and rate that is as good as none [m/s].
     fall: f64,
-    residual: f64,
+    pub(super) residual: f64,
     pub(super) islands: Islands,
     exact: Exact,
     pub(super) impacts: Impacts,
     /// Velocities at the start of the step, as far as they are known; that of the background is behind the last.
     pub(super) node: Vec<Motion3>,
     /// Velocities in the middle of the step: first without contacts, then with them.
-    movers: Vec<Mover>,
-    free: Vec<Motion3>,
+    pub(super) movers: Vec<Mover>,
+    pub(super) free: Vec<Motion3>,
     /// Those without what slows down bodies that are to hit each other at the end of the step.
-    smooth: Vec<Mover>,
+    pub(super) smooth: Vec<Mover>,
+    /// Velocities before an impact, and what its rows asked before it.
+    pub(super) before: Vec<Motion3>,
+    pub(super) kept: Vec<[Line; 2]>,
     /// Rows of an island that touch, and its resistances against rolling.
-    touching: Vec<u32>,
+    pub(super) touching: Vec<u32>,
     rolling: Vec<u32>,
     /// Mean velocities over the kick that leads to the middle of the step.
-    means: Vec<Motion3>,
+    pub(super) means: Vec<Motion3>,
     /// Buffer of the projection.
     shifts: Vec<Mover>,
 }
@@ -98,7 +102,7 @@ impl Stepper {
         scene: &mut Scene,
         (settings, time, span): (&SteppingSettings, f64, f64),
         from: From,
-        books: &mut StepBooks,
+        (books, report): (&mut StepBooks, &mut ImpactReport),
     ) -> Result<(), StepError> {
         self.kicks.find(&scene.bodies, &scene.laws, time);
         self.find_free(&scene.bodies, span, from);
@@ -115,7 +119,7 @@ impl Stepper {
         self.fall = span * self.kicks.fastest();
         self.residual = settings.residual * self.fall;
         for island in 0..self.islands.count() {
-            self.advance_island(scene, (settings, span), from, island, books)?;
+            self.advance_island(scene, (settings, span), from, island, (books, report))?;
         }
         Ok(())
     }
@@ -157,9 +161,9 @@ impl Stepper {
         (settings, span): (&SteppingSettings, f64),
         from: From,
         island: usize,
-        books: &mut StepBooks,
+        (books, report): (&mut StepBooks, &mut ImpactReport),
     ) -> Result<(), StepError> {
-        let is_struck = self.strike(scene, (settings, span), from, island, books)?;
+        let is_struck = self.strike(scene, (settings, span), from, island, (books, report))?;
         let is_split = is_struck || from == From::Start;
         let kick = if is_split { 0.5 * span } else { span };
         let (members, list) = self.islands.get(island);
@@ -234,88 +238,13 @@ impl Stepper {
         Ok(())
     }
 
-    /// Resolves the impact at the start of the step, if something in an island has come fast. True if there is one.
-    fn strike(
-        &mut self,
-        scene: &Scene,
-        (settings, span): (&SteppingSettings, f64),
-        from: From,
-        island: usize,
-        books: &mut StepBooks,
-    ) -> Result<bool, StepError> {
-        if from == From::Before && !self.rows.strikes {
-            return Ok(false);
-        }
-        let (members, list) = self.islands.get(island);
-        let Some(slow) = self.slow_speed(list, (settings, span), from) else { return Ok(false) };
-        let bodies = &scene.bodies;
-        if from == From::Before {
-            // The half of a kick that ends here.
-            for &body in members {
-                let course = &bodies.courses[body as usize];
-                let (before, node) = (course.smooth, self.node[body as usize]);
-                let mean: Motion3 = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
-                let pushed = course.pushed.map(|acceleration| 0.5 * span * acceleration);
-                books.book_body((bodies, body as usize), mean, pushed, 0.5 * span, false);
-                self.means[body as usize] = mean;
-            }
-            self.book_laws(members, 0.5 * span, false, books);
-        }
-        let (members, list) = self.islands.get(island);
-        let energy = |node: &[Motion3]| -> f64 {
-            members.iter().map(|&body| bodies.kinetic_energy(body as usize, node[body as usize])).sum()
-        };
-        let before = energy(&self.node);
-        books.note_kinetic(before);
-        let outcome = self.impacts.resolve(
-            bodies,
-            (&self.rows.all, list),
-            &mut self.node,
-            (settings, slow),
-            books.counts().impacts,
-        );
-        outcome.map_err(|source| StepError { bodies: members.to_vec(), source })?;
-        books.book_impact(energy(&self.node) - before);
-        for &body in members {
-            let nature = &bodies.natures[body as usize];
-            let acceleration = self.kicks.accelerations[body as usize];
-            let kicked = kicked(&nature.free_motion, self.node[body as usize], acceleration, 0.5 * span);
-            (self.movers[body as usize].velocity, self.free[body as usize]) = (kicked, kicked);
-        }
-        Ok(true)
-    }
-
     /// Books what laws do to bodies at the velocities in `means`.
-    fn book_laws(&self, members: &[u32], span: f64, is_present: bool, books: &mut StepBooks) {
-        let velocity = |body: halfgap_collision::BodyId| {
-            members.binary_search(&body.0).is_ok().then(|| self.means[body.index()])
-        };
+    pub(super) fn book_laws(&self, members: &[u32], span: f64, is_present: bool, books: &mut StepBooks) {
+        let velocity =
+            |body: BodyId| members.binary_search(&body.0).is_ok().then(|| self.means[body.index()]);
         for (law, power) in self.kicks.powers(velocity) {
             books.book_law(law, power, span, is_present);
         }
-    }
-
-    /// Speed [m/s] that is slow in an island in which something has come faster; `None` if nothing has.
-    fn slow_speed(
-        &self,
-        list: &[u32],
-        (settings, span): (&SteppingSettings, f64),
-        from: From,
-    ) -> Option<f64> {
-        let mut slow = settings.rigid.tolerances.velocity_tol;
-        let mut fastest = 0.0_f64;
-        for &row in list {
-            let row = &self.rows.all[row as usize];
-            slow = slow.max(SLOW_STEPS * span * row.rate(&self.kicks.accelerations).abs());
-            let closing = match (row.strikes, from) {
-                (Some(speed), _) => speed,
-                (None, From::Start) if row.is_bilateral => row.rate(&self.node).abs(),
-                (None, From::Start) if row.touches => -row.rate(&self.node),
-                _ => 0.0,
-            };
-            fastest = fastest.max(closing);
-        }
-        (fastest > slow).then_some(slow)
     }
 
     /// Finds contacts of an island that arrive at the end of the step so fast that they rebound. True if there are any.
@@ -367,13 +296,6 @@ impl Stepper {
     }
 }
 
-/// An impact that the law cannot resolve, and the bodies of its island.
-#[derive(Debug)]
-pub(super) struct StepError {
-    pub(super) bodies: Vec<u32>,
-    pub(super) source: ImpactError,
-}
-
 /// Finds the impulses of the rows of an island, beginning with those that they have, for velocities without them.
 fn solve(
     problem: &mut Problem<'_>,
@@ -393,36 +315,5 @@ fn solve(
     let is_solved = effort.is_some_and(|effort| exact.solve(problem, members, (span, slack), effort));
     if !is_solved {
         problem.sweep(residual, MOST_ROUNDS);
-    }
-}
-
-/// Remembers what a row carries at given velocities, in a step whose kick lasts `kick` [s].
-fn remember(scene: &mut Scene, rows: &Rows, index: usize, movers: &[Mover], kick: f64) {
-    let row = &rows.all[index];
-    let [normal, slip] = [&row.normal, &row.slip.line].map(|line| line.impulse);
-    let presses = row.is_bilateral || normal > 0.0;
-    let share = if row.touches { 1.0 / kick } else { 0.0 };
-    match row.source {
-        Source::Connector { connector, direction } => {
-            let tie = &mut scene.ties.memory[connector as usize];
-            tie.forces[direction as usize] = share * normal;
-            (tie.presses, tie.arrival) = (presses, row.arrives);
-        }
-        Source::Contact { pair, contact } => {
-            let contact = &mut scene.pairs.all_mut()[pair as usize].contacts[contact as usize];
-            let roll = row.roll.map_or(0.0, |roll| rows.rolls[roll as usize].line.impulse);
-            contact.forces = [normal, slip, roll].map(|impulse| share * impulse);
-            (contact.presses, contact.arrival) = (presses, row.arrives);
-            let sticks = presses && row.slip.line.is_some() && {
-                let [p, q] = row.ends().map(|place| &movers[place]);
-                let stopping = slip - row.slip.line.wanted(p, q);
-                !Line::slips(slip, row.slip.bounds[1] * normal, stopping)
-            };
-            contact.hold = match (sticks, contact.hold) {
-                (false, _) => Hold::Slips,
-                (true, Hold::Slips) => Hold::Here,
-                (true, hold) => hold,
-            };
-        }
     }
 }

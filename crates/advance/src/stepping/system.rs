@@ -1,10 +1,8 @@
 //! Rigid bodies that are advanced by steps: what callers may ask and do.
 
-#[cfg(feature = "save")]
-use crate::rigid::PartsError;
 use crate::rigid::{
     AdvanceError, ContactChanges, Counts, ForceLaw, ForceLaws, Handled, ImpactReport, Ledger, RigidParts,
-    RowForce, Snapshot, VelocityChange,
+    RowForce, Snapshot,
 };
 use crate::stepping::bodies::Bodies;
 use crate::stepping::books::StepBooks;
@@ -12,12 +10,13 @@ use crate::stepping::pairs::Pairs;
 use crate::stepping::rows::Source;
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
-use crate::stepping::step::{From, Scene, StepError, Stepper};
+use crate::stepping::step::{From, Scene, Stepper};
+use crate::stepping::striking::StepError;
 use crate::stepping::ties::Ties;
 use crate::system::EventDriven;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorId, Moving, RailHint};
+use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorId, RailHint};
 use std::sync::Arc;
 
 /// Overlap, as a fraction of the smaller body's reach, that is no fault [-].
@@ -27,13 +26,15 @@ const ROOM: f64 = 0.1;
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteppingSystem {
-    settings: SteppingSettings,
-    scene: Scene,
-    stepper: Stepper,
-    books: StepBooks,
+    pub(super) settings: SteppingSettings,
+    pub(super) scene: Scene,
+    pub(super) stepper: Stepper,
+    pub(super) books: StepBooks,
     /// Start of the present step.
-    node: Time,
+    pub(super) node: Time,
+    /// The last impact, and that of the present step, if there is one.
     impact: ImpactReport,
+    fresh: ImpactReport,
     changes: ContactChanges,
     failure: Option<AdvanceError>,
 }
@@ -66,6 +67,7 @@ impl SteppingSystem {
             books,
             node: start,
             impact: ImpactReport::default(),
+            fresh: ImpactReport::default(),
             changes: ContactChanges::default(),
             failure: None,
         };
@@ -73,25 +75,32 @@ impl SteppingSystem {
         Ok(system)
     }
 
-    /// Begins the step at the present node.
-    fn begin(&mut self, from: From) -> Result<(), AdvanceError> {
+    /// Begins the step at the present node; tells of an impact there.
+    pub(super) fn begin(&mut self, from: From) -> Result<Option<Handled>, AdvanceError> {
         let time = self.node.seconds();
+        let hits = self.books.counts().impacts;
+        self.fresh.begin(self.node);
         let outcome = self.stepper.begin(
             &mut self.scene,
             (&self.settings, time, self.settings.step),
             from,
-            &mut self.books,
+            (&mut self.books, &mut self.fresh),
         );
+        if self.books.counts().impacts > hits {
+            std::mem::swap(&mut self.impact, &mut self.fresh);
+        }
         outcome.map_err(|StepError { bodies, source }| {
             let bodies = bodies.into_iter().map(BodyId).collect();
             let error = AdvanceError::Impact { time, bodies, between: None, source };
             self.failure = Some(error.clone());
             error
-        })
+        })?;
+        let handled = Handled { time: self.node, impact: true };
+        Ok((self.books.counts().impacts > hits).then_some(handled))
     }
 
     /// Brings all bodies to a time of the present step.
-    fn go_to(&mut self, time: Time) {
+    pub(super) fn go_to(&mut self, time: Time) {
         let (since, span) = (time.since(self.node), self.settings.step);
         for place in 0..self.scene.bodies.count() {
             let state = self.scene.bodies.courses[place].state_at(since, span);
@@ -253,89 +262,6 @@ impl SteppingSystem {
     pub fn has_potential(&self, law: usize) -> bool {
         self.scene.laws.has_potential[law]
     }
-
-    /// Changes velocities of bodies at a time of the present step, all at once; a new step begins there.
-    ///
-    /// # Errors
-    /// A time or a change that is not finite: nothing is done. An impact that cannot be resolved.
-    ///
-    /// # Panics
-    /// If there is no such body.
-    pub fn intervene(
-        &mut self,
-        time: Time,
-        changes: &[VelocityChange],
-    ) -> Result<Option<Handled>, AdvanceError> {
-        crate::rigid::check_finite(time, changes)?;
-        self.interrupt(time, |scene, books| {
-            for change in changes {
-                if scene.bodies.is_fixed(change.body) {
-                    continue;
-                }
-                let place = change.body.index();
-                let moving = &mut scene.bodies.movings[place];
-                let motion =
-                    |moving: &Moving| [moving.velocity.x, moving.velocity.y, moving.angular_velocity];
-                let before = motion(moving);
-                moving.velocity += change.velocity;
-                moving.angular_velocity += change.angular_velocity;
-                let after = motion(moving);
-                let energy = |motion| scene.bodies.kinetic_energy(place, motion);
-                books.book_intervention(energy(after) - energy(before));
-            }
-        })
-    }
-
-    /// Adds a force law that acts from a time of the present step on.
-    ///
-    /// # Errors
-    /// A time that is not finite, or a law that names a body that is not there: nothing is done. An impact that cannot be resolved.
-    pub fn add_force_law(
-        &mut self,
-        time: Time,
-        law: Arc<dyn ForceLaw>,
-    ) -> Result<Option<Handled>, AdvanceError> {
-        crate::rigid::check_finite(time, &[])?;
-        crate::rigid::check_bodies_of_force_law(self.force_laws().len(), law.as_ref(), self.body_count())?;
-        self.interrupt(time, |scene, books| {
-            let snapshot = Snapshot::new(time.seconds(), &scene.bodies.movings);
-            let potential = law.potential(&snapshot);
-            books.book_intervention(potential.unwrap_or(0.0));
-            books.add_law();
-            scene.laws.add(law, potential.is_some());
-        })
-    }
-
-    /// Removes the force law at an index from a time of the present step on. Does nothing if the law does not act.
-    ///
-    /// # Errors
-    /// A time that is not finite: nothing is done. An impact that cannot be resolved.
-    pub fn remove_force_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
-        crate::rigid::check_finite(time, &[])?;
-        if !self.is_acting(law) {
-            return Ok(None);
-        }
-        self.interrupt(time, |scene, books| {
-            let snapshot = Snapshot::new(time.seconds(), &scene.bodies.movings);
-            books.book_intervention(-scene.laws.all[law].potential(&snapshot).unwrap_or(0.0));
-            scene.laws.remove(law);
-        })
-    }
-
-    /// Lets something happen at a time, at which a new step begins.
-    fn interrupt(
-        &mut self,
-        time: Time,
-        act: impl FnOnce(&mut Scene, &mut StepBooks),
-    ) -> Result<Option<Handled>, AdvanceError> {
-        let time = time.max(self.node);
-        self.books.begin(time.since(self.node) - 0.5 * self.settings.step);
-        self.go_to(time);
-        self.scene.sleep.wake_all();
-        act(&mut self.scene, &mut self.books);
-        self.begin(From::Start)?;
-        Ok(None)
-    }
 }
 
 impl EventDriven for SteppingSystem {
@@ -353,30 +279,6 @@ impl EventDriven for SteppingSystem {
         }
         self.books.begin(0.0);
         self.go_to(self.node.plus(self.settings.step));
-        self.begin(From::Before)?;
-        Ok(None)
-    }
-}
-
-/// A system that was saved, which waits for its force laws.
-#[cfg(feature = "save")]
-#[derive(Debug, serde::Deserialize)]
-pub struct SavedStepping {
-    system: SteppingSystem,
-}
-
-#[cfg(feature = "save")]
-impl SavedStepping {
-    /// The system as it was when it was saved, given the force laws that it had: it goes on with the same bits.
-    ///
-    /// # Errors
-    /// Laws that are too many, too few, or name a body that is not there.
-    pub fn with_force_laws(self, laws: Vec<Arc<dyn ForceLaw>>) -> Result<SteppingSystem, PartsError> {
-        let mut system = self.system;
-        for (index, law) in laws.iter().enumerate() {
-            crate::rigid::check_bodies_of_force_law(index, law.as_ref(), system.body_count())?;
-        }
-        system.scene.laws.restore(laws)?;
-        Ok(system)
+        self.begin(From::Before)
     }
 }

@@ -81,7 +81,7 @@ fn defaults_are_those_of_the_format() {
 
 #[test]
 fn unknown_missing_and_mistyped_fields_are_named_with_their_line() {
-    insta::assert_snapshot!(message("mass = 1.0", "mas = 1.0"), @"line 16: body[1].mas: unknown field `mas` (did you mean `mass`?), expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `origin`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `passes_through`");
+    insta::assert_snapshot!(message("mass = 1.0", "mas = 1.0"), @"line 16: body[1].mas: unknown field `mas` (did you mean `mass`?), expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `origin`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `static_friction`, `surface_velocity`, `rolling_resistance`, `tangential_elasticity`, `motion`, `passes_through`");
     insta::assert_snapshot!(message("duration = 2.0\n", "\n"), @"line 4: run: missing field `duration`");
     insta::assert_snapshot!(message("shape = { disc = { radius = 0.5 } }\n", "\n"), @"line 12: body[1]: missing field `shape`");
     insta::assert_snapshot!(message("radius = 0.5", "radius = \"half\""), @r#"line 14: body[1].shape.disc.radius: invalid type: string "half", expected a number"#);
@@ -162,7 +162,7 @@ fn json_messages_have_lines_too() {
     };
     let disc = "\"shape\": {\"disc\": {\"radius\": 1}}";
     insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mass\": -1}}"))), @"line 5: body[0].mass: must be positive, got -1 kg");
-    insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mas\": -1}}"))), @"line 5: body[0].mas: unknown field `mas` (did you mean `mass`?), expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `origin`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `passes_through`");
+    insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mas\": -1}}"))), @"line 5: body[0].mas: unknown field `mas` (did you mean `mass`?), expected one of `name`, `fixed`, `shape`, `mass`, `density`, `moment`, `center_of_mass`, `position`, `origin`, `angle`, `velocity`, `angular_velocity`, `elasticity`, `friction`, `static_friction`, `surface_velocity`, `rolling_resistance`, `tangential_elasticity`, `motion`, `passes_through`");
     insta::assert_snapshot!(bad(&scene(&format!("{{{disc},\n   \"mass\": 1}}"))), @"line 4: body[0]: missing field `name`");
     insta::assert_snapshot!(bad(&scene("{\"name\": \"a\",, }")), @"line 4: not valid JSON: key must be a string");
     insta::assert_snapshot!(bad(&scene(&format!("{{\"name\": \"a\", {disc},\n   \"mass\": NaN}}"))), @"line 5: not valid JSON: expected value");
@@ -186,8 +186,9 @@ fn what_is_not_simulated_yet_is_refused_by_name() {
         let scene = source.parse().expect("a valid scene");
         source.locate(scene.check_supported().expect_err("not supported")).to_string()
     };
-    insta::assert_snapshot!(refusal("mass = 1.0", "mass = 1.0\nfriction = 0.3"), @"line 17: body[1].friction: friction is not supported yet");
-    insta::assert_snapshot!(refusal("duration = 2.0", "duration = 2.0\nstrategy = \"steps\""), @r#"line 6: run.strategy: the strategy "steps" is not supported yet"#);
+    insta::assert_snapshot!(refusal("mass = 1.0", "mass = 1.0\nfriction = 0.3"), @"line 17: body[1].friction: friction is not supported by events yet: set `strategy` to `steps` in `[run]`");
+    let steps = "duration = 2.0\nstrategy = \"steps\"\ntime_step = 0.01\ncontacts = false";
+    insta::assert_snapshot!(refusal("duration = 2.0", steps), @"line 8: run.contacts: steps know no contacts without forces: leave `contacts` out, or set `strategy` to `events`");
 }
 
 #[test]
@@ -199,6 +200,7 @@ fn all_else_in_the_format_is_simulated() {
         ("duration = 2.0", "duration = 2.0\nintegrator = \"euler\""),
         ("duration = 2.0", "duration = 2.0\nstabilization = \"velocity\""),
         ("duration = 2.0", "duration = 2.0\nstrategy = \"events\""),
+        ("duration = 2.0", "duration = 2.0\nstrategy = \"steps\"\ntime_step = 0.01"),
         ("gravity = { acceleration = [0.0, -9.81] }", "mutual_gravity = { strength = 1 }"),
         ("gravity = { acceleration = [0.0, -9.81] }", spring),
         ("[[force]]", rod),

@@ -1,0 +1,154 @@
+//! Impacts at the start of a step: when there is one, and what sets out after it.
+
+use crate::rigid::ImpactReport;
+use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::books::StepBooks;
+use crate::stepping::kicks::kicked;
+use crate::stepping::report;
+use crate::stepping::settings::SteppingSettings;
+use crate::stepping::step::{From, LARGEST_SMALL, MOST_ROUNDS, SLOW_STEPS, Scene, Stepper};
+use crate::stepping::sweeps::Problem;
+use halfgap_collision::BodyId;
+use halfgap_contact::ImpactError;
+
+/// An impact that the law cannot resolve, and the bodies of its island.
+#[derive(Debug)]
+pub(super) struct StepError {
+    pub(super) bodies: Vec<u32>,
+    pub(super) source: ImpactError,
+}
+
+impl Stepper {
+    /// Resolves the impact at the start of the step, if something in an island has come fast. True if there is one.
+    pub(super) fn strike(
+        &mut self,
+        scene: &Scene,
+        (settings, span): (&SteppingSettings, f64),
+        from: From,
+        island: usize,
+        (books, report): (&mut StepBooks, &mut ImpactReport),
+    ) -> Result<bool, StepError> {
+        if from == From::Before && !self.rows.strikes {
+            return Ok(false);
+        }
+        let (members, list) = self.islands.get(island);
+        let Some(slow) = self.slow_speed(list, (settings, span), from) else { return Ok(false) };
+        let bodies = &scene.bodies;
+        if from == From::Before {
+            // The half of a kick that ends here.
+            for &body in members {
+                let course = &bodies.courses[body as usize];
+                let (before, node) = (course.smooth, self.node[body as usize]);
+                let mean: Motion3 = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
+                let pushed = course.pushed.map(|acceleration| 0.5 * span * acceleration);
+                books.book_body((bodies, body as usize), mean, pushed, 0.5 * span, false);
+                self.means[body as usize] = mean;
+            }
+            self.book_laws(members, 0.5 * span, false, books);
+        }
+        let (members, list) = self.islands.get(island);
+        let before = energy(bodies, members, &self.node);
+        books.note_kinetic(before);
+        self.before.clone_from(&self.node);
+        if list.len() <= LARGEST_SMALL {
+            let outcome = self.impacts.resolve(
+                bodies,
+                (&mut self.rows.all, list),
+                &mut self.node,
+                (settings, slow),
+                books.counts().impacts,
+            );
+            outcome.map_err(|source| StepError { bodies: members.to_vec(), source })?;
+        } else {
+            self.strike_many(bodies, island, slow);
+        }
+        let (members, list) = self.islands.get(island);
+        books.book_impact(energy(bodies, members, &self.node) - before);
+        let rows = list.iter().map(|&row| &self.rows.all[row as usize]).filter(|row| row.strikes.is_some());
+        report::add_rows((scene, settings), rows, (&self.before, &self.node), report);
+        report.energy_change += energy(bodies, members, &self.node) - before;
+        let states = members
+            .iter()
+            .map(|&body| (BodyId(body), bodies.state_with(body as usize, self.node[body as usize])));
+        report.add_states(states);
+        for &body in members {
+            let nature = &bodies.natures[body as usize];
+            let acceleration = self.kicks.accelerations[body as usize];
+            let kicked = kicked(&nature.free_motion, self.node[body as usize], acceleration, 0.5 * span);
+            (self.movers[body as usize].velocity, self.free[body as usize]) = (kicked, kicked);
+        }
+        Ok(true)
+    }
+
+    /// Resolves an impact of many rows at once by sweeps: each that has come faster than `slow` opens by its elasticity (Newton's law),
+    /// or all just stop if that would give energy.
+    fn strike_many(&mut self, bodies: &Bodies, island: usize, slow: f64) {
+        let (members, list) = self.islands.get(island);
+        let Self { rows, touching, kept, smooth, node, .. } = self;
+        touching.clear();
+        touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
+        kept.clear();
+        for &row in touching.iter() {
+            let row = &mut rows.all[row as usize];
+            let rate = row.strikes.map_or(row.rate(node), |speed| row.rate(node).min(-speed));
+            let rebounds = if rate < -slow { row.elasticity * rate } else { 0.0 };
+            kept.push([row.normal, row.slip.line]);
+            (row.normal.offset, row.normal.impulse) = (rebounds, 0.0);
+            (row.slip.line.offset, row.slip.line.impulse) = (-row.slip.running, 0.0);
+        }
+        let before = energy(bodies, members, node);
+        for is_elastic in [true, false] {
+            for &body in members {
+                smooth[body as usize].velocity = node[body as usize];
+            }
+            if !is_elastic {
+                touching.iter().for_each(|&row| rows.all[row as usize].normal.offset = 0.0);
+            }
+            let (list, rolls) = (touching.as_slice(), &mut rows.rolls);
+            Problem { rows: &mut rows.all, list, rolls, rolling: &[], movers: smooth }
+                .sweep(self.residual, MOST_ROUNDS);
+            let after = members
+                .iter()
+                .map(|&body| bodies.kinetic_energy(body as usize, smooth[body as usize].velocity));
+            if after.sum::<f64>() <= before {
+                break;
+            }
+        }
+        for (&row, [normal, slip]) in touching.iter().zip(kept.iter()) {
+            let row = &mut rows.all[row as usize];
+            row.blow = row.normal.impulse;
+            (row.normal, row.slip.line) = (*normal, *slip);
+        }
+        for &body in members {
+            node[body as usize] = smooth[body as usize].velocity;
+        }
+    }
+
+    /// Speed [m/s] that is slow in an island in which something has come faster; `None` if nothing has.
+    fn slow_speed(
+        &self,
+        list: &[u32],
+        (settings, span): (&SteppingSettings, f64),
+        from: From,
+    ) -> Option<f64> {
+        let mut slow = settings.rigid.tolerances.velocity_tol;
+        let mut fastest = 0.0_f64;
+        for &row in list {
+            let row = &self.rows.all[row as usize];
+            slow = slow.max(SLOW_STEPS * span * row.rate(&self.kicks.accelerations).abs());
+            let closing = match (row.strikes, from) {
+                (Some(speed), _) => speed,
+                (None, From::Start) if row.is_bilateral => row.rate(&self.node).abs(),
+                (None, From::Start) if row.touches => -row.rate(&self.node),
+                _ => 0.0,
+            };
+            fastest = fastest.max(closing);
+        }
+        (fastest > slow).then_some(slow)
+    }
+}
+
+/// Kinetic energy [J] of some bodies.
+fn energy(bodies: &Bodies, members: &[u32], velocities: &[Motion3]) -> f64 {
+    members.iter().map(|&body| bodies.kinetic_energy(body as usize, velocities[body as usize])).sum()
+}
