@@ -29,7 +29,7 @@ pub enum AdvanceBy {
     Steps {
         /// Length of the steps [s].
         step: f64,
-        /// Change of an impulse, as a fraction of the largest [-], up to which the impulses of a step are found.
+        /// Rate that sweeps over large islands may leave, as a fraction of the speed that forces give in a step [-].
         residual: f64,
     },
 }

@@ -34,6 +34,14 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
+    /// A body has what only steps simulate so far: friction, a surface that runs, or, if it is fixed, a motion.
+    #[error("body \"{body}\": events do not simulate its {quantity} yet: advance by steps")]
+    NeedsSteps {
+        /// Name of the body.
+        body: String,
+        /// What only steps simulate.
+        quantity: &'static str,
+    },
     /// A coordinate or a velocity is so large that its powers overflow, or a coordinate so large that its rounding
     /// hides the smallest body.
     #[error("body \"{body}\": {quantity} must be at most {largest:e} in size, got {value:e}")]

@@ -1,8 +1,11 @@
 //! Worlds that are advanced by steps, with friction: scenes with known answers, rest, rolling, piles, and what callers may do.
 
-use halfgap::geometry::DVec2;
+use halfgap::geometry::{DVec2, Shape};
 use halfgap::scene::{RunData, Scene, SceneFormat, StrategyData};
-use halfgap::{BodyId, BodyState, CheckReport, Intervention, World, check};
+use halfgap::{
+    AdvanceBy, BodyId, BodySpec, BodyState, CheckReport, Intervention, Surface, World, WorldBuilder,
+    WorldSettings, check,
+};
 use halfgap_tests::data;
 use std::f64::consts::TAU;
 
@@ -372,4 +375,23 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
         let message = of(run, field);
         assert!(message.contains(&format!("{place}: ")), "{field}: {message}");
     }
+}
+
+#[test]
+fn what_only_steps_know_is_refused_from_code_too_and_so_is_a_step_of_no_length() {
+    let build = |strategy: AdvanceBy, friction: f64| {
+        let mut builder = WorldBuilder::new(WorldSettings { strategy, ..WorldSettings::default() });
+        let shape = Shape::disc(1.0).expect("a fine radius");
+        let surface = Surface { friction, static_friction: friction, ..Surface::default() };
+        builder.add(BodySpec { surface, ..BodySpec::movable("disc", shape, 1.0, BodyState::default()) });
+        builder.build().map(|_| ()).map_err(|error| error.to_string())
+    };
+    let steps = |step: f64| AdvanceBy::Steps { step, residual: 1e-6 };
+    let refused = build(AdvanceBy::Events, 0.5).expect_err("events know no friction");
+    assert_eq!(refused, "body \"disc\": events do not simulate its surface yet: advance by steps");
+    for step in [0.0, -1.0, f64::NAN] {
+        let refused = build(steps(step), 0.5).expect_err("no time goes by");
+        assert!(refused.contains("time_step must be positive and finite"), "{refused}");
+    }
+    assert_eq!((build(steps(0.01), 0.5), build(AdvanceBy::Events, 0.0)), (Ok(()), Ok(())));
 }

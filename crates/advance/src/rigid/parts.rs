@@ -118,7 +118,8 @@ type Rule<'a> = (&'static str, fn(f64) -> bool, &'a [(&'static str, f64)]);
 pub(crate) const FINITE: (&str, fn(f64) -> bool) = ("finite", f64::is_finite);
 const NOT_NEGATIVE: (&str, fn(f64) -> bool) =
     ("finite, and not negative", |value| value >= 0.0 && value.is_finite());
-const POSITIVE: (&str, fn(f64) -> bool) = ("positive and finite", |value| value > 0.0 && value.is_finite());
+pub(crate) const POSITIVE: (&str, fn(f64) -> bool) =
+    ("positive and finite", |value| value > 0.0 && value.is_finite());
 
 impl RigidParts {
     /// Checks the parts, the settings and the time of the start [s].

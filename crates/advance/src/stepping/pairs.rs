@@ -125,7 +125,7 @@ impl Pairs {
             elasticity,
             contacts: Vec::new(),
             deepest: 0.0,
-            known_until: 0.0,
+            known_until: f64::NEG_INFINITY,
         });
         for body in [a, b].into_iter().filter(|&body| !bodies.is_fixed(body)) {
             self.of_body[body.index()].push(place);

@@ -1,6 +1,6 @@
 //! Settings of an advance by steps.
 
-use crate::rigid::RigidSettings;
+use crate::rigid::{POSITIVE, PartsError, RigidSettings, keep_to};
 use halfgap_contact::Restitution;
 
 /// Settings of an advance by steps.
@@ -9,7 +9,7 @@ use halfgap_contact::Restitution;
 pub struct SteppingSettings {
     /// Length of a step [s].
     pub step: f64,
-    /// Change of an impulse, as a fraction of the largest [-], up to which the impulses of a step are found.
+    /// Rate that sweeps may leave, as a fraction of the speed that forces give in a step [-].
     pub residual: f64,
     /// Error of positions [m] that is not corrected.
     pub slack: f64,
@@ -17,4 +17,16 @@ pub struct SteppingSettings {
     pub restitution: Restitution,
     /// Thresholds of touching, the impact law and its order, and whether bodies collide; steps need nothing else of it.
     pub rigid: RigidSettings,
+}
+
+impl SteppingSettings {
+    /// Checks the numbers that only steps have.
+    ///
+    /// # Errors
+    /// The first that is out of range.
+    pub(super) fn check(&self) -> Result<(), PartsError> {
+        let numbers = [("time_step", self.step), ("residual", self.residual), ("slack", self.slack)];
+        keep_to(&[(POSITIVE.0, POSITIVE.1, &numbers)])
+            .map_err(|(setting, rule, value)| PartsError::BadSetting { setting, rule, value })
+    }
 }

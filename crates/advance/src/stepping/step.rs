@@ -171,6 +171,7 @@ impl Stepper {
             let place = body as usize;
             farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= self.fall
         });
+        let means = Means { from, is_quiet, span, slack: settings.slack, residual: self.residual };
         if !list.is_empty() {
             let Self { rows, rolling, .. } = self;
             rolling.clear();
@@ -183,21 +184,7 @@ impl Stepper {
                 }
             }
             books.note_solve();
-            let mut problem = Problem {
-                rows: &mut rows.all,
-                list,
-                rolls: &mut rows.rolls,
-                rolling,
-                movers: &mut self.movers,
-            };
-            solve(
-                &mut problem,
-                &mut self.exact,
-                members,
-                (from, is_quiet),
-                (span, settings.slack),
-                self.residual,
-            );
+            solve((rows, list, rolling), &mut self.movers, &mut self.exact, members, means);
         }
         for &body in members {
             self.smooth[body as usize].velocity = self.movers[body as usize].velocity;
@@ -211,21 +198,7 @@ impl Stepper {
             touching.clear();
             touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
             rolling.retain(|&roll| rows.all[rows.rolls[roll as usize].row as usize].touches);
-            let mut problem = Problem {
-                rows: &mut rows.all,
-                list: touching,
-                rolls: &mut rows.rolls,
-                rolling,
-                movers: &mut self.smooth,
-            };
-            solve(
-                &mut problem,
-                &mut self.exact,
-                members,
-                (from, is_quiet),
-                (span, settings.slack),
-                self.residual,
-            );
+            solve((rows, touching, rolling), &mut self.smooth, &mut self.exact, members, means);
         }
         self.set_off(&mut scene.bodies, island, kick, is_split, books);
         let (_, list) = self.islands.get(island);
@@ -296,15 +269,26 @@ impl Stepper {
     }
 }
 
-/// Finds the impulses of the rows of an island, beginning with those that they have, for velocities without them.
+/// What decides how the problem of an island is solved.
+#[derive(Clone, Copy, Debug)]
+struct Means {
+    from: From,
+    /// Nothing is faster than forces make it in a step.
+    is_quiet: bool,
+    span: f64,
+    slack: f64,
+    residual: f64,
+}
+
+/// Finds the impulses of some rows of an island and of some that resist rolling, beginning with those that they have, for velocities without them.
 fn solve(
-    problem: &mut Problem<'_>,
+    (rows, list, rolling): (&mut Rows, &[u32], &[u32]),
+    movers: &mut [Mover],
     exact: &mut Exact,
     members: &[u32],
-    (from, is_quiet): (From, bool),
-    (span, slack): (f64, f64),
-    residual: f64,
+    Means { from, is_quiet, span, slack, residual }: Means,
 ) {
+    let mut problem = Problem { rows: &mut rows.all, list, rolls: &mut rows.rolls, rolling, movers };
     let effort = match problem.list.len() {
         0..=LARGEST_SMALL => Some(Effort::Full),
         // Without forces to begin with.
@@ -312,7 +296,7 @@ fn solve(
         0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
         _ => None,
     };
-    let is_solved = effort.is_some_and(|effort| exact.solve(problem, members, (span, slack), effort));
+    let is_solved = effort.is_some_and(|effort| exact.solve(&mut problem, members, (span, slack), effort));
     if !is_solved {
         problem.sweep(residual, MOST_ROUNDS);
     }

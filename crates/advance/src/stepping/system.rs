@@ -47,6 +47,7 @@ impl SteppingSystem {
     /// Parts or settings out of range, or an impact at the start that cannot be resolved.
     pub fn new(parts: RigidParts, settings: SteppingSettings, start: Time) -> Result<Self, AdvanceError> {
         parts.check(&settings.rigid, start)?;
+        settings.check()?;
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;
         let count = bodies.len();
         let books = StepBooks::new(force_laws.len());

@@ -174,6 +174,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
     let place = match &error {
         WorldError::DoubleName { name } | WorldError::BadName { name } => body(name, &|_| "name"),
         WorldError::TooLarge { quantity: "gravity", .. } => strongest_gravity(scene),
+        WorldError::NeedsSteps { body: name, .. } => body(name, &|_| "name"),
         WorldError::BadNumber { body: name, quantity, .. }
         | WorldError::TooLarge { body: name, quantity, .. } => body(name, &|body| field_of(body, quantity)),
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => body(second, &place_of),

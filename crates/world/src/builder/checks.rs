@@ -1,11 +1,11 @@
 //! Checks of the input of a world: names, numbers out of range, unknown bodies, coordinates that are too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
-use crate::settings::ToleranceOverrides;
+use crate::settings::{AdvanceBy, ToleranceOverrides};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
-use halfgap_advance::rigid::{FreeMotion, Scales};
+use halfgap_advance::rigid::{FreeMotion, Scales, Surface};
 use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, Tolerances};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
@@ -24,6 +24,15 @@ const BACK_TO_BACK: f64 = 2e-3;
 /// Point, path, place [m] and side of a rail's stop.
 type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
+/// Refuses what only steps simulate so far.
+fn require_events(body: &BodySpec) -> Result<(), WorldError> {
+    let needs = [("surface", body.surface != Surface::default()), ("motion", body.motion.is_some())];
+    match needs.into_iter().find(|&(_, needs)| needs) {
+        Some((quantity, _)) => Err(WorldError::NeedsSteps { body: body.name.clone(), quantity }),
+        None => Ok(()),
+    }
+}
+
 impl WorldBuilder {
     /// Checks names, numbers and references to bodies, in the order in which they were added.
     pub(super) fn check(&self) -> Result<(), WorldError> {
@@ -36,6 +45,9 @@ impl WorldBuilder {
                 return Err(WorldError::BadName { name: body.name.clone() });
             }
             check_body(body)?;
+            if self.settings.strategy == AdvanceBy::Events {
+                require_events(body)?;
+            }
         }
         for (body, law) in self.bodies.iter().zip(&self.free_motions) {
             check_flight(body, law)?;
