@@ -1,6 +1,6 @@
 //! Runs the piles with friction with every engine and prints a table.
 //!
-//! `cargo bench -p halfgap-report --bench piles -- [--only NAME]... [--engine NAME] [--passes N]`
+//! `cargo bench -p halfgap-report --bench piles -- [--only NAME]... [--engine PART] [--passes N]`
 
 use halfgap_report::engines::Engine;
 use halfgap_report::engines::box2d::Box2d;
@@ -22,6 +22,8 @@ fn engines() -> Vec<Box<dyn Engine>> {
             tuning: Tuning::Stock,
             joints: Joints::Impulse,
         }),
+        halfgap(60.0, 10.0),
+        halfgap(60.0, 3.0),
         halfgap(60.0, 1.0),
         halfgap(60.0, 1e-1),
         halfgap(60.0, 1e-2),
@@ -50,7 +52,8 @@ fn main() {
     for scene in piles::rough(|name| only.is_empty() || only.iter().any(|part| name.contains(part.as_str())))
     {
         for candidate in engines() {
-            if engine.as_ref().is_some_and(|name| name != candidate.name()) {
+            let label = format!("{} {}", candidate.name(), candidate.settings());
+            if engine.as_ref().is_some_and(|part| !label.contains(part.as_str())) {
                 continue;
             }
             let runs: Vec<_> = (0..passes).map(|_| run(candidate.as_ref(), &scene)).collect();

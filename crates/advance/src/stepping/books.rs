@@ -16,6 +16,10 @@ pub(super) struct StepBooks {
     contacts: f64,
     damping: f64,
     laws: Vec<f64>,
+    /// Energy [J] that contacts have taken in the present step, and in the one before, and blows at the start of this.
+    taken: f64,
+    spare: f64,
+    blown: f64,
 }
 
 impl StepBooks {
@@ -39,6 +43,7 @@ impl StepBooks {
             *work += late * std::mem::take(power);
         }
         (self.contacts, self.damping) = (0.0, 0.0);
+        (self.spare, self.taken, self.blown) = (self.taken, 0.0, 0.0);
         self.counts.segments += 1;
         self.counts.events += 1;
     }
@@ -64,6 +69,7 @@ impl StepBooks {
             damped -= rates[k] * mean[k] * mean[k] / inverse[k];
         }
         self.ledger.steps += work;
+        self.taken -= work;
         self.ledger.damping += span * damped;
         if is_present {
             self.contacts += work / span;
@@ -80,8 +86,19 @@ impl StepBooks {
     }
 
     pub(super) fn book_impact(&mut self, change: f64) {
-        self.ledger.impacts += change;
+        self.book_blow(change);
         self.counts.impacts += 1;
+    }
+
+    /// Books what a body loses in contacts that end fast and give nothing back: they are no impacts of their own.
+    pub(super) fn book_blow(&mut self, change: f64) {
+        self.ledger.impacts += change;
+        self.blown -= change;
+    }
+
+    /// Energy [J] that contacts have taken in the step before, and blows at its end: a projection may give it back.
+    pub(super) fn spare(&self) -> f64 {
+        (self.spare + self.blown).max(0.0)
     }
 
     pub(super) fn book_projection(&mut self, change: f64) {

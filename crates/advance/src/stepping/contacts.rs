@@ -82,6 +82,17 @@ pub(super) fn find_contacts(
     }
     gone.clear();
     gone.append(contacts);
+    // What overlaps more than is looked for is known from before.
+    for old in gone.iter() {
+        let [p, q] = [a.0.feature(old.features[0]), b.0.feature(old.features[1])];
+        let sample = GapSample::measure_unbounded(p, &a.1.pose, q, &b.1.pose);
+        let is_deep = |sample: &GapSample| {
+            sample.gap < -nearness.depth
+                && sample.overrun <= nearness.overrun
+                && !has_left_arc(sample, [(p, &a.1.pose), (q, &b.1.pose)])
+        };
+        found.extend(sample.filter(is_deep).map(|sample| Found { features: old.features, sample }));
+    }
     for Found { features, sample } in found.iter() {
         let old = gone.iter().position(|contact| contact.features == *features);
         contacts.push(match old {

@@ -76,7 +76,7 @@ impl Pairs {
             return;
         }
         let nature = &bodies.natures[body.index()];
-        let margin = way + MARGIN * nature.reach;
+        let margin = 2.0 * way + MARGIN * nature.reach;
         self.boxed_until[body.index()] = bodies.ways[body.index()] + margin;
         let boxed =
             nature.body.shape.bounds_at(&bodies.movings[body.index()].pose).grown(margin + self.target_gap);

@@ -1,63 +1,104 @@
 //! Displacements that bring bodies which overlap, and connectors that have come apart, back to their gaps: the least in the metric of
 //! the masses, found by sweeps.
 
-use crate::stepping::bodies::Bodies;
+use crate::stepping::bodies::{Bodies, Motion3};
 use crate::stepping::books::StepBooks;
 use crate::stepping::rows::{Mover, Row};
 
 /// Largest number of sweeps: what they leave is brought back in the next step.
 const MOST_SWEEPS: usize = 10;
 /// Share of the error that does not matter, up to which a sweep need not change anything [-].
-const ENOUGH: f64 = 0.1;
+const ENOUGH: f64 = 0.5;
 
-/// Brings rows back that are off by more than a slack [m]. True if bodies were shifted.
-pub(super) fn project(
-    bodies: &mut Bodies,
-    rows: &mut [Row],
-    slack: f64,
-    shifts: &mut Vec<Mover>,
-    books: &mut StepBooks,
-) -> bool {
-    shifts.clear();
-    shifts.extend((0..=bodies.count()).map(|place| bodies.mover(place, [0.0; 3])));
-    for row in rows.iter_mut() {
-        row.normal.before = 0.0;
-    }
-    for _ in 0..MOST_SWEEPS {
-        let mut most = 0.0_f64;
-        for row in rows.iter_mut() {
-            let [a, b] = row.ends();
-            let (mut p, mut q) = (shifts[a], shifts[b]);
-            let line = &mut row.normal;
-            let lacking = line.rate(&p.velocity, &q.velocity) + row.gap;
-            let wanted = line.before - lacking * line.weight;
-            let change = if row.is_bilateral { wanted } else { wanted.max(0.0) } - line.before;
-            if change != 0.0 {
-                line.push(&mut p, &mut q, change);
-                line.before += change;
-                most = most.max(change.abs() / line.weight);
-                (shifts[a], shifts[b]) = (p, q);
+/// Displacements at the start of a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shifts {
+    movers: Vec<Mover>,
+    /// Sum of the changes of the gaps of each body [m].
+    changes: Vec<f64>,
+    asked: Vec<u32>,
+}
+
+impl Shifts {
+    /// Finds displacements that bring rows back which are off by more than a slack [m]; the gaps of the rows are then those after them.
+    pub(super) fn find(&mut self, bodies: &Bodies, rows: &mut [Row], slack: f64) {
+        let Self { movers, changes, asked } = self;
+        movers.clear();
+        movers.extend((0..=bodies.count()).map(|place| bodies.mover(place, [0.0; 3])));
+        changes.clear();
+        changes.resize(movers.len(), 0.0);
+        let enough = ENOUGH * slack;
+        asked.clear();
+        for (index, row) in rows.iter_mut().enumerate() {
+            row.normal.before = 0.0;
+            if row.is_bilateral || row.gap < 0.0 {
+                asked.push(index as u32);
             }
         }
-        if most <= ENOUGH * slack {
-            break;
+        for _ in 0..MOST_SWEEPS {
+            let mut most = 0.0_f64;
+            for &index in asked.iter() {
+                most = most.max(visit(&mut rows[index as usize], movers, changes));
+            }
+            if most <= enough {
+                break;
+            }
+            // Only what others have moved since is looked at again.
+            asked.clear();
+            let moved = |row: &Row| row.ends().into_iter().any(|place| changes[place] > enough);
+            asked.extend((0..rows.len()).filter(|&index| moved(&rows[index])).map(|index| index as u32));
+        }
+        for row in rows.iter_mut() {
+            let [a, b] = row.ends();
+            if changes[a] + changes[b] > 0.0 {
+                let [p, q] = [a, b].map(|place| &movers[place].velocity);
+                row.gap += row.normal.rate(p, q);
+                row.slip.off += row.slip.line.rate(p, q);
+            }
         }
     }
-    for row in rows.iter_mut() {
-        let [p, q] = row.ends().map(|place| &shifts[place].velocity);
-        row.gap += row.normal.rate(p, q);
-        row.slip.off += row.slip.line.rate(p, q);
-    }
-    for (place, shift) in shifts.iter().enumerate().take(bodies.count()) {
-        let shift = shift.velocity;
-        if shift != [0.0; 3] {
-            let nature = &bodies.natures[place];
-            let acceleration = nature.free_motion.acceleration;
-            books.book_projection(
-                -(acceleration.x * shift[0] + acceleration.y * shift[1]) / nature.body.inverse_mass,
-            );
-            bodies.shift(place, shift);
+
+    /// Shifts the bodies, but lifts nothing by more energy than contacts have taken since they sank.
+    pub(super) fn apply(&mut self, bodies: &mut Bodies, books: &mut StepBooks) {
+        let lifts: f64 =
+            (0..bodies.count()).map(|place| lift(bodies, place, self.movers[place].velocity)).sum();
+        let share = if lifts > books.spare() { books.spare() / lifts } else { 1.0 };
+        for (place, mover) in self.movers.iter().enumerate().take(bodies.count()) {
+            let shift = mover.velocity.map(|shift| share * shift);
+            if shift != [0.0; 3] {
+                books.book_projection(lift(bodies, place, shift));
+                bodies.shift(place, shift);
+            }
         }
     }
-    true
+}
+
+/// Energy [J] that a shift of a body takes against the force that acts on it everywhere.
+fn lift(bodies: &Bodies, place: usize, [x, y, _]: Motion3) -> f64 {
+    let nature = &bodies.natures[place];
+    let acceleration = nature.free_motion.acceleration;
+    if nature.body.is_fixed() {
+        0.0
+    } else {
+        -(acceleration.x * x + acceleration.y * y) / nature.body.inverse_mass
+    }
+}
+
+/// Gives a row the displacement by which its gap is none, or none if it is open; returns the change of the gap [m].
+fn visit(row: &mut Row, shifts: &mut [Mover], changes: &mut [f64]) -> f64 {
+    let [a, b] = row.ends();
+    let (mut p, mut q) = (shifts[a], shifts[b]);
+    let line = &mut row.normal;
+    let lacking = line.rate(&p.velocity, &q.velocity) + row.gap;
+    let wanted = line.before - lacking * line.weight;
+    let impulse = if row.is_bilateral { wanted } else { wanted.max(0.0) } - line.before;
+    if impulse == 0.0 {
+        return 0.0;
+    }
+    line.push(&mut p, &mut q, impulse);
+    line.before += impulse;
+    (shifts[a], shifts[b]) = (p, q);
+    let change = impulse.abs() * line.compliance;
+    (changes[a], changes[b]) = (changes[a] + change, changes[b] + change);
+    change
 }

@@ -28,15 +28,16 @@ pub(super) struct Line {
     y: f64,
     a: f64,
     b: f64,
+    /// J M^-1 J^T [1/kg].
+    pub(super) compliance: f64,
     /// 1/(J M^-1 J^T), the impulse that changes the rate by one [kg]; 0 where there is no row.
     pub(super) weight: f64,
     /// What is added to the rate to get what is asked of [m/s].
     pub(super) offset: f64,
     /// Impulse [N s] of the problem that is being solved.
     pub(super) impulse: f64,
-    /// Impulse before a round of sweeps, and the direction along which it goes on after it.
+    /// Impulse [kg m] of a displacement.
     pub(super) before: f64,
-    pub(super) conjugate: f64,
 }
 
 impl Line {
@@ -45,7 +46,7 @@ impl Line {
         let compliance = (p.inverse_mass + q.inverse_mass) * (x * x + y * y)
             + (p.inverse_moment * a * a + q.inverse_moment * b * b);
         let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
-        Self { x, y, a, b, weight, offset, ..Self::default() }
+        Self { x, y, a, b, compliance, weight, offset, ..Self::default() }
     }
 
     /// True if there is such a row.
@@ -57,6 +58,19 @@ impl Line {
     /// J.
     pub(super) fn jacobian(&self) -> [f64; 6] {
         [self.x, self.y, self.a, -self.x, -self.y, self.b]
+    }
+
+    /// [x, y, a, b].
+    #[inline]
+    pub(super) fn arms(&self) -> [f64; 4] {
+        [self.x, self.y, self.a, self.b]
+    }
+
+    /// Change of this rate by a unit impulse of another row between the same bodies [1/kg].
+    #[inline]
+    pub(super) fn coupling(&self, other: &Self, [p, q]: [&Mover; 2]) -> f64 {
+        (p.inverse_mass + q.inverse_mass) * (self.x * other.x + self.y * other.y)
+            + (p.inverse_moment * self.a * other.a + q.inverse_moment * self.b * other.b)
     }
 
     /// J v [m/s] of two velocities.
@@ -77,13 +91,11 @@ impl Line {
         q.velocity[2] += q.inverse_moment * self.b * impulse;
     }
 
-    /// Changes the impulse, and the velocities by it; returns by how much.
+    /// Changes the impulse, and the velocities by it.
     #[inline(always)]
-    pub(super) fn set(&mut self, p: &mut Mover, q: &mut Mover, impulse: f64) -> f64 {
-        let change = impulse - self.impulse;
-        self.push(p, q, change);
+    pub(super) fn set(&mut self, p: &mut Mover, q: &mut Mover, impulse: f64) {
+        self.push(p, q, impulse - self.impulse);
         self.impulse = impulse;
-        change.abs()
     }
 
     /// Impulse at which the row would do what is asked [N s].

@@ -24,19 +24,19 @@ use crate::stepping::kicks::{Kicks, kicked};
 use crate::stepping::listing::{Lengths, Listing};
 use crate::stepping::memory::remember;
 use crate::stepping::pairs::Pairs;
-use crate::stepping::projection::project;
+use crate::stepping::projection::Shifts;
 use crate::stepping::rows::{Line, Mover, Rows};
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
 use crate::stepping::striking::StepError;
-use crate::stepping::sweeps::Problem;
+use crate::stepping::sweeps::{Enough, Problem, Sweeps};
 use crate::stepping::ties::Ties;
 use halfgap_collision::BodyId;
 
-/// Largest number of rounds of sweeps; what they leave is corrected in the steps that follow.
-pub(super) const MOST_ROUNDS: u32 = 100;
 /// Number of rows up to which an island is solved exactly, by whatever it takes.
 pub(super) const LARGEST_SMALL: usize = 60;
+/// Residual beyond which what moves is left to sweeps [-].
+const LOOSE: f64 = 1e-3;
 /// Number of rows up to which an island in which nothing is faster than forces make it in a step is solved exactly, if the forces of the
 /// last step tell its modes: a tower stands, where sweeps would let each of its contacts close a little.
 const LARGEST_QUIET: usize = 1000;
@@ -62,13 +62,17 @@ pub(super) struct Stepper {
     listing: Listing,
     pub(super) rows: Rows,
     /// Speed that forces give in a step, and rate that is as good as none [m/s].
-    fall: f64,
+    pub(super) fall: f64,
     pub(super) residual: f64,
     pub(super) islands: Islands,
     exact: Exact,
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) sweeps: Sweeps,
     pub(super) impacts: Impacts,
     /// Velocities at the start of the step, as far as they are known; that of the background is behind the last.
     pub(super) node: Vec<Motion3>,
+    /// Velocities at the start of the kick that leads to the middle of the step.
+    pub(super) starts: Vec<Motion3>,
     /// Velocities in the middle of the step: first without contacts, then with them.
     pub(super) movers: Vec<Mover>,
     pub(super) free: Vec<Motion3>,
@@ -82,8 +86,8 @@ pub(super) struct Stepper {
     rolling: Vec<u32>,
     /// Mean velocities over the kick that leads to the middle of the step.
     pub(super) means: Vec<Motion3>,
-    /// Buffer of the projection.
-    shifts: Vec<Mover>,
+    #[cfg_attr(feature = "save", serde(skip))]
+    shifts: Shifts,
 }
 
 /// Where a step comes from.
@@ -111,8 +115,11 @@ impl Stepper {
         let Scene { bodies, pairs, ties, sleep, .. } = scene;
         let pairs = settings.rigid.collisions.then_some(pairs);
         self.listing.list(bodies, (pairs, ties, sleep), &self.free, lengths, &mut self.rows);
-        if self.rows.deepest > settings.slack || self.rows.farthest_off > settings.slack {
-            project(bodies, &mut self.rows.all, settings.slack, &mut self.shifts, books);
+        // What the steps leave open anyway is not worth a shift.
+        let slack = settings.slack.max(settings.residual * span * span * self.kicks.fastest());
+        let shifts = self.rows.deepest > slack || self.rows.farthest_off > slack;
+        if shifts {
+            self.shifts.find(bodies, &mut self.rows.all, slack);
         }
         books.note_gaps(&self.rows, target_gap);
         self.islands.find(bodies, |place| !sleep.is_asleep(place), &self.rows.all);
@@ -120,6 +127,9 @@ impl Stepper {
         self.residual = settings.residual * self.fall;
         for island in 0..self.islands.count() {
             self.advance_island(scene, (settings, span), from, island, (books, report))?;
+        }
+        if shifts {
+            self.shifts.apply(&mut scene.bodies, books);
         }
         Ok(())
     }
@@ -135,6 +145,10 @@ impl Stepper {
         );
         self.node.push([0.0; 3]);
         self.free.clear();
+        self.starts.clone_from(&self.node);
+        if from == From::Before {
+            self.starts.iter_mut().zip(&bodies.courses).for_each(|(start, course)| *start = course.middle);
+        }
         for (place, nature) in bodies.natures.iter().enumerate() {
             let acceleration = self.kicks.accelerations[place];
             self.free.push(if nature.body.is_fixed() {
@@ -167,11 +181,20 @@ impl Stepper {
         let is_split = is_struck || from == From::Start;
         let kick = if is_split { 0.5 * span } else { span };
         let (members, list) = self.islands.get(island);
+        let quiet = if settings.residual <= LOOSE { self.fall } else { 0.1 * self.fall };
         let is_quiet = members.iter().all(|&body| {
             let place = body as usize;
-            farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= self.fall
+            farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= quiet
         });
-        let means = Means { from, is_quiet, span, slack: settings.slack, residual: self.residual };
+        let enough = Enough::new(settings.residual, self.fall);
+        let means = Means {
+            from,
+            is_quiet,
+            is_loose: settings.residual > LOOSE,
+            span,
+            slack: settings.slack,
+            enough,
+        };
         if !list.is_empty() {
             let Self { rows, rolling, .. } = self;
             rolling.clear();
@@ -184,7 +207,13 @@ impl Stepper {
                 }
             }
             books.note_solve();
-            solve((rows, list, rolling), &mut self.movers, &mut self.exact, members, means);
+            solve(
+                (rows, list, rolling),
+                (&mut self.movers, &self.starts),
+                (&mut self.exact, &mut self.sweeps),
+                members,
+                means,
+            );
         }
         for &body in members {
             self.smooth[body as usize].velocity = self.movers[body as usize].velocity;
@@ -198,9 +227,15 @@ impl Stepper {
             touching.clear();
             touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
             rolling.retain(|&roll| rows.all[rows.rolls[roll as usize].row as usize].touches);
-            solve((rows, touching, rolling), &mut self.smooth, &mut self.exact, members, means);
+            solve(
+                (rows, touching, rolling),
+                (&mut self.smooth, &self.starts),
+                (&mut self.exact, &mut self.sweeps),
+                members,
+                means,
+            );
         }
-        self.set_off(&mut scene.bodies, island, kick, is_split, books);
+        self.set_off(&mut scene.bodies, island, (kick, span), is_split, books);
         let (_, list) = self.islands.get(island);
         for &row in list {
             remember(scene, &self.rows, row as usize, &self.smooth, kick);
@@ -245,7 +280,7 @@ impl Stepper {
         &mut self,
         bodies: &mut Bodies,
         island: usize,
-        kick: f64,
+        (kick, span): (f64, f64),
         is_split: bool,
         books: &mut StepBooks,
     ) {
@@ -255,12 +290,30 @@ impl Stepper {
             let before = if is_split { self.node[place] } else { bodies.courses[place].middle };
             let (smooth, middle) = (self.smooth[place].velocity, self.movers[place].velocity);
             let free = self.free[place];
+            let last = bodies.courses[place];
             let course = &mut bodies.courses[place];
             (course.middle, course.smooth) = (middle, smooth);
+            let pushed: Motion3 = std::array::from_fn(|k| smooth[k] - free[k]);
+            let jump = std::array::from_fn(|k| pushed[k] - span * last.pushed[k]);
+            if !is_split && farthest(bodies.natures[place].reach, jump) > SLOW_STEPS * self.fall {
+                // It has been struck at the start of the step: half a kick led there, and half a kick leads on.
+                let half: Motion3 = std::array::from_fn(|k| 0.5 * (free[k] - before[k]));
+                let after = std::array::from_fn(|k| smooth[k] - half[k]);
+                course.acceleration = half.map(|kick| 2.0 * kick / span);
+                course.pushed = [0.0; 3];
+                let node = self.node[place];
+                let until = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
+                let pushed = last.pushed.map(|acceleration| 0.5 * span * acceleration);
+                books.book_body((bodies, place), until, pushed, 0.5 * span, false);
+                books.book_blow(bodies.kinetic_energy(place, after) - bodies.kinetic_energy(place, node));
+                let since: Motion3 = std::array::from_fn(|k| 0.5 * (after[k] + smooth[k]));
+                books.book_body((bodies, place), since, [0.0; 3], 0.5 * span, true);
+                self.means[place] = std::array::from_fn(|k| 0.5 * (until[k] + since[k]));
+                continue;
+            }
             course.acceleration = std::array::from_fn(|k| (smooth[k] - before[k]) / kick);
-            course.pushed = std::array::from_fn(|k| (smooth[k] - free[k]) / kick);
+            course.pushed = pushed.map(|change| change / kick);
             let mean: Motion3 = std::array::from_fn(|k| 0.5 * (smooth[k] + before[k]));
-            let pushed = std::array::from_fn(|k| smooth[k] - free[k]);
             books.book_body((bodies, place), mean, pushed, kick, true);
             self.means[place] = mean;
         }
@@ -277,20 +330,22 @@ struct Means {
     is_quiet: bool,
     span: f64,
     slack: f64,
-    residual: f64,
+    enough: Enough,
+    /// What moves is left to sweeps.
+    is_loose: bool,
 }
 
 /// Finds the impulses of some rows of an island and of some that resist rolling, beginning with those that they have, for velocities without them.
 fn solve(
     (rows, list, rolling): (&mut Rows, &[u32], &[u32]),
-    movers: &mut [Mover],
-    exact: &mut Exact,
+    (movers, before): (&mut [Mover], &[Motion3]),
+    (exact, sweeps): (&mut Exact, &mut Sweeps),
     members: &[u32],
-    Means { from, is_quiet, span, slack, residual }: Means,
+    Means { from, is_quiet, span, slack, enough, is_loose }: Means,
 ) {
-    let mut problem = Problem { rows: &mut rows.all, list, rolls: &mut rows.rolls, rolling, movers };
+    let mut problem = Problem { rows: &mut rows.all, list, rolls: &mut rows.rolls, rolling, movers, before };
     let effort = match problem.list.len() {
-        0..=LARGEST_SMALL => Some(Effort::Full),
+        0..=LARGEST_SMALL if !is_loose => Some(Effort::Full),
         // Without forces to begin with.
         0..=LARGEST_QUIET if from == From::Start => Some(Effort::Full),
         0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
@@ -298,6 +353,6 @@ fn solve(
     };
     let is_solved = effort.is_some_and(|effort| exact.solve(&mut problem, members, (span, slack), effort));
     if !is_solved {
-        problem.sweep(residual, MOST_ROUNDS);
+        sweeps.solve(&mut problem, enough);
     }
 }

@@ -6,8 +6,8 @@ use crate::stepping::books::StepBooks;
 use crate::stepping::kicks::kicked;
 use crate::stepping::report;
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::step::{From, LARGEST_SMALL, MOST_ROUNDS, SLOW_STEPS, Scene, Stepper};
-use crate::stepping::sweeps::Problem;
+use crate::stepping::step::{From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
+use crate::stepping::sweeps::{Enough, Problem};
 use halfgap_collision::BodyId;
 use halfgap_contact::ImpactError;
 
@@ -60,7 +60,7 @@ impl Stepper {
             );
             outcome.map_err(|source| StepError { bodies: members.to_vec(), source })?;
         } else {
-            self.strike_many(bodies, island, slow);
+            self.strike_many(bodies, island, slow, settings.residual);
         }
         let (members, list) = self.islands.get(island);
         books.book_impact(energy(bodies, members, &self.node) - before);
@@ -75,6 +75,7 @@ impl Stepper {
             let nature = &bodies.natures[body as usize];
             let acceleration = self.kicks.accelerations[body as usize];
             let kicked = kicked(&nature.free_motion, self.node[body as usize], acceleration, 0.5 * span);
+            self.starts[body as usize] = self.node[body as usize];
             (self.movers[body as usize].velocity, self.free[body as usize]) = (kicked, kicked);
         }
         Ok(true)
@@ -82,9 +83,10 @@ impl Stepper {
 
     /// Resolves an impact of many rows at once by sweeps: each that has come faster than `slow` opens by its elasticity (Newton's law),
     /// or all just stop if that would give energy.
-    fn strike_many(&mut self, bodies: &Bodies, island: usize, slow: f64) {
+    fn strike_many(&mut self, bodies: &Bodies, island: usize, slow: f64, share: f64) {
+        let enough = Enough::new(share, self.fall);
         let (members, list) = self.islands.get(island);
-        let Self { rows, touching, kept, smooth, node, .. } = self;
+        let Self { rows, touching, kept, smooth, node, sweeps, .. } = self;
         touching.clear();
         touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
         kept.clear();
@@ -105,8 +107,9 @@ impl Stepper {
                 touching.iter().for_each(|&row| rows.all[row as usize].normal.offset = 0.0);
             }
             let (list, rolls) = (touching.as_slice(), &mut rows.rolls);
-            Problem { rows: &mut rows.all, list, rolls, rolling: &[], movers: smooth }
-                .sweep(self.residual, MOST_ROUNDS);
+            let mut problem =
+                Problem { rows: &mut rows.all, list, rolls, rolling: &[], movers: smooth, before: node };
+            sweeps.solve(&mut problem, enough);
             let after = members
                 .iter()
                 .map(|&body| bodies.kinetic_energy(body as usize, smooth[body as usize].velocity));

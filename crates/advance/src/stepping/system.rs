@@ -22,6 +22,9 @@ use std::sync::Arc;
 /// Overlap, as a fraction of the smaller body's reach, that is no fault [-].
 const ROOM: f64 = 0.1;
 
+/// Share of a step after which its end is reached [-]: sums of steps and the times that callers ask for differ by rounding.
+const REACHED: f64 = 1.0 - 1e-9;
+
 /// System of rigid bodies that is advanced by steps.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -270,7 +273,11 @@ impl EventDriven for SteppingSystem {
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
-        if self.failure.is_some() { Some(self.node) } else { Some(self.node.plus(self.settings.step)) }
+        if self.failure.is_some() {
+            Some(self.node)
+        } else {
+            Some(self.node.plus(REACHED * self.settings.step))
+        }
     }
 
     /// Begins the next step. One that cannot be made ends the advance: each further call returns the same error.
