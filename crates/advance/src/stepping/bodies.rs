@@ -19,6 +19,8 @@ pub(super) struct Nature {
     pub(super) surface: Surface,
     /// Largest distance [m] of a point from the centre of mass.
     pub(super) reach: f64,
+    /// Least width [m], about: of a plate that of a block of the same area and length.
+    pub(super) thickness: f64,
 }
 
 /// Velocities, accelerations or displacements of x, y and angle.
@@ -39,6 +41,8 @@ pub(super) struct Course {
     pub(super) acceleration: Motion3,
     /// The part of it that is due to contacts and connectors.
     pub(super) pushed: Motion3,
+    /// Share of the step that it does not go [-]: it stops where it would pass through something, and its own time stands still.
+    pub(super) delay: f64,
 }
 
 impl Course {
@@ -53,7 +57,9 @@ impl Course {
     pub(super) fn state_at(&self, since: f64, span: f64) -> BodyState {
         let ([x, y, spin], [u, v, turn]) = (self.middle, self.smooth);
         let [ax, ay, turning] = self.acceleration;
-        let (late, bend) = (since - 0.5 * span, 0.5 * since * (since - span));
+        let bend = if self.delay > 0.0 { 0.0 } else { 0.5 * since * (since - span) };
+        let since = (1.0 - self.delay) * since;
+        let late = since - 0.5 * span;
         BodyState {
             position: self.position + DVec2::new(since * x + bend * ax, since * y + bend * ay),
             angle: self.angle + since * spin + bend * turning,
@@ -81,6 +87,8 @@ pub(super) struct Bodies {
     pub(super) ways: Vec<f64>,
     /// Motions at the start of the present step: poses there, velocities as they are known before it.
     pub(super) movings: Vec<Moving>,
+    /// Smallest thickness of all bodies [m].
+    pub(super) least_thickness: f64,
 }
 
 impl Bodies {
@@ -104,14 +112,16 @@ impl Bodies {
         let movings = courses.iter().map(|course| Moving::from(&course.state_at(0.0, 0.0))).collect();
         let natures = parts.into_iter().map(|BodyPart { body, free_motion, surface, .. }| {
             let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
-            Nature { reach: body.shape.reach(), body, free_motion, surface }
+            let (reach, area) = (body.shape.reach(), body.shape.mass_properties().area);
+            Nature { reach, thickness: 0.5 * area / reach, body, free_motion, surface }
         });
         let natures: Vec<Nature> = natures.collect();
         let in_step = natures.iter().map(|Nature { body, free_motion, .. }| InverseInertia {
             inverse_mass: body.inverse_mass / (1.0 + 0.5 * span * free_motion.linear_rate),
             inverse_moment: body.inverse_moment / (1.0 + 0.5 * span * free_motion.angular_rate),
         });
-        Self { ways: vec![0.0; courses.len()], in_step: in_step.collect(), natures, courses, movings }
+        let least_thickness = natures.iter().map(|nature| nature.thickness).fold(f64::INFINITY, f64::min);
+        Self { least_thickness, ways: vec![0.0; courses.len()], in_step: in_step.collect(), natures, courses, movings }
     }
 
     /// Inverse inertia of a body, or of the background, against the impulses of a step.
@@ -124,6 +134,12 @@ impl Bodies {
     #[inline]
     pub(super) fn count(&self) -> usize {
         self.natures.len()
+    }
+
+    /// Thickness of the thinner of two bodies [m].
+    #[inline]
+    pub(super) fn thinner(&self, [a, b]: [usize; 2]) -> f64 {
+        self.natures[a].thickness.min(self.natures[b].thickness)
     }
 
     /// True for a body that no force moves, and for the background.

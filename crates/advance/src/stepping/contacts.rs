@@ -34,6 +34,8 @@ pub(super) struct Contact {
     pub(super) normal_angle: f64,
     /// Speed [m/s] at which it touches at the end of the step, if that is an impact.
     pub(super) arrival: Option<f64>,
+    /// It has a row in the present step.
+    pub(super) is_listed: bool,
 }
 
 impl Contact {
@@ -50,6 +52,7 @@ impl Contact {
             hold: Hold::Slips,
             normal_angle: turned(normal, 0.0),
             arrival: None,
+            is_listed: false,
         }
     }
 }
@@ -154,9 +157,9 @@ fn drop_doubles(found: &mut Vec<Found>, nearness: &Nearness) {
         let Found { sample, .. } = found[next];
         // From b to a, whichever is the primary side.
         let normal = |sample: &GapSample| if sample.primary_is_a { sample.normal } else { -sample.normal };
-        let near = nearness.reach.max(sample.gap.abs());
         let double = (0..kept).find(|&other| {
             let other = &found[other].sample;
+            let near = sample.gap.abs().max(other.gap.abs()) + nearness.overrun;
             let (p, q) = (normal(&sample), normal(other));
             p.dot(q) > 0.0
                 && p.perp_dot(q).abs() < ONE_PLACE

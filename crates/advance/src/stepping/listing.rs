@@ -4,6 +4,7 @@ use crate::rigid::PairSurface;
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure_contacts};
 use crate::stepping::pairs::{Pair, Pairs};
+use crate::stepping::passing::FAST;
 use crate::stepping::rows::{Line, Roll, Row, Rows, Slip, Source};
 use crate::stepping::sleep::Sleep;
 use crate::stepping::ties::Ties;
@@ -23,8 +24,8 @@ const MARGIN: f64 = 0.05;
 /// Overlap that is looked for, as a multiple of the deepest of a pair in the last step [-]: other features may overlap a little more.
 const DEEPER: f64 = 1.5;
 
-/// Overlap beyond which two bodies go through each other, as a fraction of the smaller reach [-]: nobody knows to which side they belong.
-/// Without a bound, boxes of a tower that falls at a coarse residual take each other's far sides for near ones.
+/// Overlap that is looked for at most, as a fraction of the lesser thickness [-]: nobody knows to which side bodies belong that are deeper in
+/// each other, but by what is known from before. Without a bound, a corner beside a thin wall is taken for one behind its far side.
 const DEEPEST: f64 = 0.3;
 
 /// What the listing works with.
@@ -108,6 +109,7 @@ impl Listing {
             if sleeps[0] || sleeps[1] {
                 // Looked at without changing what is remembered: it sleeps on if nothing comes near.
                 if !self.comes_near(bodies, pair, (places, sleeps), free, lengths) {
+                    pairs.all_mut()[index].contacts.iter_mut().for_each(|contact| contact.is_listed = false);
                     continue;
                 }
                 for place in places {
@@ -132,7 +134,7 @@ impl Listing {
         let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
         let way: f64 = (0..2).map(|side| if sleeps[side] { 0.0 } else { self.ways[places[side]] }).sum();
         let nearness =
-            Nearness { reach: way + lengths.target_gap, depth: pair.deepest + way, overrun: lengths.slack };
+            Nearness { reach: way + lengths.target_gap, depth: depth_to_find(bodies, pair, places, way), overrun: lengths.slack };
         let still = [0.0; 3];
         let [p, q] = [0, 1].map(|side: usize| if sleeps[side] { &still } else { &free[places[side]] });
         let mut comes = false;
@@ -171,22 +173,28 @@ impl Listing {
             pair.known_until = gone + reach;
             let nearness = Nearness {
                 reach: reach + lengths.target_gap,
-                // What overlaps more has done so before, or it would lie behind another edge.
-                depth: (way + DEEPER * pair.deepest + lengths.slack)
-                    .min(DEEPEST * reaches[0].min(reaches[1])),
+                depth: depth_to_find(bodies, pair, places, way) + lengths.slack,
                 overrun: lengths.slack,
             };
             find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
         }
+        if std::env::var("DBG").is_ok() { eprintln!("list {:?} known {is_known} way {way:.4} contacts {:?}", pair.bodies, self.found.iter().zip(&pair.contacts).map(|(f, c)| (c.features, f.sample.gap, f.sample.overrun)).collect::<Vec<_>>()); }
         pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
         for (contact, found) in self.found.iter().enumerate() {
-            if found.sample.gap <= way + lengths.target_gap {
+            pair.contacts[contact].is_listed = found.sample.gap <= way + lengths.target_gap;
+            if pair.contacts[contact].is_listed {
                 add_contact(bodies, pair, (index, contact), &found.sample, lengths, rows);
             } else {
                 pair.contacts[contact].let_go();
             }
         }
     }
+}
+
+/// Depth [m] up to which features of a pair that have not touched may overlap: faster ones are stopped where they touch.
+fn depth_to_find(bodies: &Bodies, pair: &Pair, places: [usize; 2], way: f64) -> f64 {
+    let thickness = bodies.thinner(places);
+    (way.min(FAST * thickness) + DEEPER * pair.deepest).min(DEEPEST * thickness)
 }
 
 /// Adds the row of a contact as it is measured.

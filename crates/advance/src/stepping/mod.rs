@@ -20,6 +20,7 @@ mod kicks;
 mod listing;
 mod memory;
 mod pairs;
+mod passing;
 mod projection;
 mod report;
 mod rows;

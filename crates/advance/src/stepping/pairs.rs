@@ -71,9 +71,18 @@ impl Pairs {
     /// Tells how far a body will have gone in all by the end of the step, at most `way` [m] of it within the step; its pairs are found
     /// anew if it can leave its box.
     pub(super) fn cover(&mut self, bodies: &Bodies, body: BodyId, way: f64) {
+        if let Some(boxed) = self.extend(bodies, body, way)
+            && !bodies.is_fixed(body)
+        {
+            self.drop_far(bodies, body, &boxed);
+        }
+    }
+
+    /// As [`cover`](Self::cover), but drops no pair; returns the box of the body if it is a new one.
+    pub(super) fn extend(&mut self, bodies: &Bodies, body: BodyId, way: f64) -> Option<Aabb> {
         let gone = bodies.ways[body.index()] + way;
         if gone <= self.boxed_until[body.index()] {
-            return;
+            return None;
         }
         let nature = &bodies.natures[body.index()];
         let margin = 2.0 * way + MARGIN * nature.reach;
@@ -81,15 +90,13 @@ impl Pairs {
         let boxed =
             nature.body.shape.bounds_at(&bodies.movings[body.index()].pose).grown(margin + self.target_gap);
         self.broad.set(body, boxed);
-        if !bodies.is_fixed(body) {
-            self.drop_far(bodies, body, &boxed);
-        }
         let mut found = std::mem::take(&mut self.found);
         self.broad.find_overlapping(&boxed, &mut found);
         for &other in &found {
             self.add(bodies, [body.min(other), body.max(other)]);
         }
         self.found = found;
+        Some(boxed)
     }
 
     /// Drops the pairs of a body whose boxes no longer overlap.

@@ -15,7 +15,7 @@
 //! (1983) (RATTLE); D. E. Stewart, J. C. Trinkle, Int. J. Numer. Meth. Engng. 39 (1996) (friction in the problem of velocities).
 
 use crate::rigid::{ForceLaws, ImpactReport};
-use crate::stepping::bodies::{Bodies, Motion3, farthest};
+use crate::stepping::bodies::{Bodies, Course, Motion3, farthest};
 use crate::stepping::books::StepBooks;
 use crate::stepping::exact::{Effort, Exact};
 use crate::stepping::impacts::Impacts;
@@ -24,6 +24,7 @@ use crate::stepping::kicks::{Kicks, kicked};
 use crate::stepping::listing::{Lengths, Listing};
 use crate::stepping::memory::remember;
 use crate::stepping::pairs::Pairs;
+use crate::stepping::passing::Passing;
 use crate::stepping::projection::Shifts;
 use crate::stepping::rows::{Line, Mover, Rows};
 use crate::stepping::settings::SteppingSettings;
@@ -42,6 +43,10 @@ const LOOSE: f64 = 1e-3;
 const LARGEST_QUIET: usize = 1000;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 pub(super) const SLOW_STEPS: f64 = 2.0;
+
+/// A body is struck at the start of a step if contacts push it by more than in the step before, and by more than this share of what
+/// forces make in a step [-]: the mean of the velocities before and after is then none that it ever has.
+const JUMP: f64 = 0.2;
 
 /// What changes from step to step.
 #[derive(Clone, Debug)]
@@ -88,6 +93,8 @@ pub(super) struct Stepper {
     pub(super) means: Vec<Motion3>,
     #[cfg_attr(feature = "save", serde(skip))]
     shifts: Shifts,
+    #[cfg_attr(feature = "save", serde(skip))]
+    passing: Passing,
 }
 
 /// Where a step comes from.
@@ -131,6 +138,10 @@ impl Stepper {
         if shifts {
             self.shifts.apply(&mut scene.bodies, books);
         }
+        if settings.rigid.collisions {
+            let Scene { bodies, pairs, ties, .. } = scene;
+            self.passing.stop(bodies, (pairs, ties), &settings.rigid.tolerances, span);
+        }
         Ok(())
     }
 
@@ -147,14 +158,15 @@ impl Stepper {
         self.free.clear();
         self.starts.clone_from(&self.node);
         if from == From::Before {
-            self.starts.iter_mut().zip(&bodies.courses).for_each(|(start, course)| *start = course.middle);
+            self.starts.iter_mut().zip(&bodies.courses).for_each(|(start, course)| *start = course.smooth);
         }
         for (place, nature) in bodies.natures.iter().enumerate() {
             let acceleration = self.kicks.accelerations[place];
             self.free.push(if nature.body.is_fixed() {
                 bodies.courses[place].middle
             } else if from == From::Before {
-                kicked(&nature.free_motion, bodies.courses[place].middle, acceleration, span)
+                let Course { smooth, delay, .. } = bodies.courses[place];
+                kicked(&nature.free_motion, smooth, acceleration, (1.0 - delay) * span)
             } else {
                 kicked(&nature.free_motion, self.node[place], acceleration, 0.5 * span)
             });
@@ -287,24 +299,25 @@ impl Stepper {
         let (members, _) = self.islands.get(island);
         for &body in members {
             let place = body as usize;
-            let before = if is_split { self.node[place] } else { bodies.courses[place].middle };
+            let before = if is_split { self.node[place] } else { bodies.courses[place].smooth };
             let (smooth, middle) = (self.smooth[place].velocity, self.movers[place].velocity);
             let free = self.free[place];
             let last = bodies.courses[place];
             let course = &mut bodies.courses[place];
-            (course.middle, course.smooth) = (middle, smooth);
+            (course.middle, course.smooth, course.delay) = (middle, smooth, 0.0);
             let pushed: Motion3 = std::array::from_fn(|k| smooth[k] - free[k]);
             let jump = std::array::from_fn(|k| pushed[k] - span * last.pushed[k]);
-            if !is_split && farthest(bodies.natures[place].reach, jump) > SLOW_STEPS * self.fall {
-                // It has been struck at the start of the step: half a kick led there, and half a kick leads on.
-                let half: Motion3 = std::array::from_fn(|k| 0.5 * (free[k] - before[k]));
-                let after = std::array::from_fn(|k| smooth[k] - half[k]);
-                course.acceleration = half.map(|kick| 2.0 * kick / span);
-                course.pushed = [0.0; 3];
+            let is_struck = farthest(bodies.natures[place].reach, jump) > JUMP * self.fall;
+            if !is_split && (is_struck || last.delay > 0.0) {
+                // It has been struck at the start of the step, or has its own time: part of a kick led there, and half a one leads on.
+                let acceleration = self.kicks.accelerations[place];
+                let after = std::array::from_fn(|k| smooth[k] - 0.5 * span * acceleration[k]);
+                (course.acceleration, course.pushed) = (acceleration, [0.0; 3]);
                 let node = self.node[place];
                 let until = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
-                let pushed = last.pushed.map(|acceleration| 0.5 * span * acceleration);
-                books.book_body((bodies, place), until, pushed, 0.5 * span, false);
+                let late = (0.5 - last.delay) * span;
+                let pushed = last.pushed.map(|acceleration| late * acceleration);
+                books.book_body((bodies, place), until, pushed, late, false);
                 books.book_blow(bodies.kinetic_energy(place, after) - bodies.kinetic_energy(place, node));
                 let since: Motion3 = std::array::from_fn(|k| 0.5 * (after[k] + smooth[k]));
                 books.book_body((bodies, place), since, [0.0; 3], 0.5 * span, true);

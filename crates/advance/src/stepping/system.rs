@@ -109,7 +109,8 @@ impl SteppingSystem {
         for place in 0..self.scene.bodies.count() {
             let state = self.scene.bodies.courses[place].state_at(since, span);
             self.scene.bodies.place(place, &state);
-            let way = self.scene.bodies.courses[place].middle.map(|velocity| velocity * since);
+            let course = &self.scene.bodies.courses[place];
+            let way = course.middle.map(|velocity| velocity * (1.0 - course.delay) * since);
             self.scene.bodies.note_way(place, way);
         }
         self.node = time;
