@@ -178,7 +178,6 @@ impl Listing {
             };
             find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
         }
-        if std::env::var("DBG").is_ok() { eprintln!("list {:?} known {is_known} way {way:.4} contacts {:?}", pair.bodies, self.found.iter().zip(&pair.contacts).map(|(f, c)| (c.features, f.sample.gap, f.sample.overrun)).collect::<Vec<_>>()); }
         pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
         for (contact, found) in self.found.iter().enumerate() {
             pair.contacts[contact].is_listed = found.sample.gap <= way + lengths.target_gap;

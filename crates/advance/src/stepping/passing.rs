@@ -167,14 +167,13 @@ impl Passing {
         });
         let settings = SearchSettings::default();
         let search = PairSearch { a: &a, b: &b, tolerances, settings: &settings, rules: &self.rules };
-        if std::env::var("DBG").is_ok() { eprintln!("meet {:?} from {from} rules {:?}", pair.bodies, self.rules); }
         let mut time = from;
         for _ in 0..MOST_SEARCHES {
             match search.step(time, span) {
                 Search::NoneBefore(clear) if clear >= span => return,
                 Search::NoneBefore(clear) => time = clear,
                 Search::Contact(contact) => {
-                    time = contact.time; if std::env::var("DBG").is_ok() { eprintln!("  contact {contact:?} of {span}"); }
+                    time = contact.time;
                     break;
                 }
             }
