@@ -10,6 +10,7 @@ mod impacts;
 mod laws;
 mod mirror;
 mod parser_fuzz;
+mod passing;
 mod rail_corners;
 mod rail_stops;
 mod reference_failures;

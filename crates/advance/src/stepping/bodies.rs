@@ -121,7 +121,14 @@ impl Bodies {
             inverse_moment: body.inverse_moment / (1.0 + 0.5 * span * free_motion.angular_rate),
         });
         let least_thickness = natures.iter().map(|nature| nature.thickness).fold(f64::INFINITY, f64::min);
-        Self { least_thickness, ways: vec![0.0; courses.len()], in_step: in_step.collect(), natures, courses, movings }
+        Self {
+            least_thickness,
+            ways: vec![0.0; courses.len()],
+            in_step: in_step.collect(),
+            natures,
+            courses,
+            movings,
+        }
     }
 
     /// Inverse inertia of a body, or of the background, against the impulses of a step.

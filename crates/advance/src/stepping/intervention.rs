@@ -16,7 +16,7 @@ impl SteppingSystem {
     /// Changes velocities of bodies at a time of the present step, all at once; a new step begins there.
     ///
     /// # Errors
-    /// A time or a change that is not finite: nothing is done. An impact that cannot be resolved.
+    /// A time or a change that is not finite: nothing is done.
     ///
     /// # Panics
     /// If there is no such body.
@@ -48,7 +48,7 @@ impl SteppingSystem {
     /// Adds a force law that acts from a time of the present step on.
     ///
     /// # Errors
-    /// A time that is not finite, or a law that names a body that is not there: nothing is done. An impact that cannot be resolved.
+    /// A time that is not finite, or a law that names a body that is not there: nothing is done.
     pub fn add_force_law(
         &mut self,
         time: Time,
@@ -68,7 +68,7 @@ impl SteppingSystem {
     /// Removes the force law at an index from a time of the present step on. Does nothing if the law does not act.
     ///
     /// # Errors
-    /// A time that is not finite: nothing is done. An impact that cannot be resolved.
+    /// A time that is not finite: nothing is done.
     pub fn remove_force_law(&mut self, time: Time, law: usize) -> Result<Option<Handled>, AdvanceError> {
         check_finite(time, &[])?;
         if !self.is_acting(law) {
@@ -92,7 +92,7 @@ impl SteppingSystem {
         self.go_to(time);
         self.scene.sleep.wake_all();
         act(&mut self.scene, &mut self.books);
-        self.begin(From::Start)
+        Ok(self.begin(From::Start))
     }
 }
 

@@ -133,8 +133,11 @@ impl Listing {
     ) -> bool {
         let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
         let way: f64 = (0..2).map(|side| if sleeps[side] { 0.0 } else { self.ways[places[side]] }).sum();
-        let nearness =
-            Nearness { reach: way + lengths.target_gap, depth: depth_to_find(bodies, pair, places, way), overrun: lengths.slack };
+        let nearness = Nearness {
+            reach: way + lengths.target_gap,
+            depth: depth_to_find(bodies, pair, places),
+            overrun: lengths.slack,
+        };
         let still = [0.0; 3];
         let [p, q] = [0, 1].map(|side: usize| if sleeps[side] { &still } else { &free[places[side]] });
         let mut comes = false;
@@ -173,7 +176,7 @@ impl Listing {
             pair.known_until = gone + reach;
             let nearness = Nearness {
                 reach: reach + lengths.target_gap,
-                depth: depth_to_find(bodies, pair, places, way) + lengths.slack,
+                depth: depth_to_find(bodies, pair, places) + lengths.slack,
                 overrun: lengths.slack,
             };
             find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
@@ -190,10 +193,10 @@ impl Listing {
     }
 }
 
-/// Depth [m] up to which features of a pair that have not touched may overlap: faster ones are stopped where they touch.
-fn depth_to_find(bodies: &Bodies, pair: &Pair, places: [usize; 2], way: f64) -> f64 {
+/// Depth [m] up to which features of a pair that had no row may overlap: faster ones are stopped where they touch.
+fn depth_to_find(bodies: &Bodies, pair: &Pair, places: [usize; 2]) -> f64 {
     let thickness = bodies.thinner(places);
-    (way.min(FAST * thickness) + DEEPER * pair.deepest).min(DEEPEST * thickness)
+    (FAST * thickness + DEEPER * pair.deepest).min(DEEPEST * thickness)
 }
 
 /// Adds the row of a contact as it is measured.

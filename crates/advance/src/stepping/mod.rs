@@ -12,6 +12,7 @@
 mod bodies;
 mod books;
 mod contacts;
+mod departure;
 mod exact;
 mod impacts;
 mod intervention;
@@ -29,6 +30,7 @@ mod sleep;
 mod step;
 mod striking;
 mod sweeps;
+mod swept;
 mod system;
 mod ties;
 

@@ -136,6 +136,11 @@ impl Passing {
         if way <= FAST * bodies.thinner(places) {
             return;
         }
+        let are_discs = places.iter().all(|&place| bodies.natures[place].body.shape.features().len() == 1);
+        if are_discs && pair.contacts.iter().any(|contact| contact.is_listed) {
+            // The distance of two points that go straight is convex: it is never less than the row has it.
+            return;
+        }
         // What has a row may sink a little, and no more than that: rows know nothing of what turns far.
         let sunk = -(pair.deepest + FAST * bodies.thinner(places));
         self.rules.clear();

@@ -29,10 +29,8 @@ use crate::stepping::projection::Shifts;
 use crate::stepping::rows::{Line, Mover, Rows};
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
-use crate::stepping::striking::StepError;
 use crate::stepping::sweeps::{Enough, Problem, Sweeps};
 use crate::stepping::ties::Ties;
-use halfgap_collision::BodyId;
 
 /// Number of rows up to which an island is solved exactly, by whatever it takes.
 pub(super) const LARGEST_SMALL: usize = 60;
@@ -43,10 +41,6 @@ const LOOSE: f64 = 1e-3;
 const LARGEST_QUIET: usize = 1000;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 pub(super) const SLOW_STEPS: f64 = 2.0;
-
-/// A body is struck at the start of a step if contacts push it by more than in the step before, and by more than this share of what
-/// forces make in a step [-]: the mean of the velocities before and after is then none that it ever has.
-const JUMP: f64 = 0.2;
 
 /// What changes from step to step.
 #[derive(Clone, Debug)]
@@ -114,7 +108,7 @@ impl Stepper {
         (settings, time, span): (&SteppingSettings, f64, f64),
         from: From,
         (books, report): (&mut StepBooks, &mut ImpactReport),
-    ) -> Result<(), StepError> {
+    ) {
         self.kicks.find(&scene.bodies, &scene.laws, time);
         self.find_free(&scene.bodies, span, from);
         let target_gap = settings.rigid.tolerances.target_gap;
@@ -133,7 +127,7 @@ impl Stepper {
         self.fall = span * self.kicks.fastest();
         self.residual = settings.residual * self.fall;
         for island in 0..self.islands.count() {
-            self.advance_island(scene, (settings, span), from, island, (books, report))?;
+            self.advance_island(scene, (settings, span), from, island, (books, report));
         }
         if shifts {
             self.shifts.apply(&mut scene.bodies, books);
@@ -142,7 +136,6 @@ impl Stepper {
             let Scene { bodies, pairs, ties, .. } = scene;
             self.passing.stop(bodies, (pairs, ties), &settings.rigid.tolerances, span);
         }
-        Ok(())
     }
 
     /// Finds the velocities with which bodies would go through the step without contacts.
@@ -188,8 +181,8 @@ impl Stepper {
         from: From,
         island: usize,
         (books, report): (&mut StepBooks, &mut ImpactReport),
-    ) -> Result<(), StepError> {
-        let is_struck = self.strike(scene, (settings, span), from, island, (books, report))?;
+    ) {
+        let is_struck = self.strike(scene, (settings, span), from, island, (books, report));
         let is_split = is_struck || from == From::Start;
         let kick = if is_split { 0.5 * span } else { span };
         let (members, list) = self.islands.get(island);
@@ -255,16 +248,6 @@ impl Stepper {
         let Scene { bodies, laws, sleep, .. } = scene;
         let (members, list) = self.islands.get(island);
         sleep.settle(bodies, laws, (members, &self.rows.all, list), (self.residual, self.fall));
-        Ok(())
-    }
-
-    /// Books what laws do to bodies at the velocities in `means`.
-    pub(super) fn book_laws(&self, members: &[u32], span: f64, is_present: bool, books: &mut StepBooks) {
-        let velocity =
-            |body: BodyId| members.binary_search(&body.0).is_ok().then(|| self.means[body.index()]);
-        for (law, power) in self.kicks.powers(velocity) {
-            books.book_law(law, power, span, is_present);
-        }
     }
 
     /// Finds contacts of an island that arrive at the end of the step so fast that they rebound. True if there are any.
@@ -285,53 +268,6 @@ impl Stepper {
             }
         }
         any
-    }
-
-    /// Lets the bodies of an island go through the step with the velocities found.
-    fn set_off(
-        &mut self,
-        bodies: &mut Bodies,
-        island: usize,
-        (kick, span): (f64, f64),
-        is_split: bool,
-        books: &mut StepBooks,
-    ) {
-        let (members, _) = self.islands.get(island);
-        for &body in members {
-            let place = body as usize;
-            let before = if is_split { self.node[place] } else { bodies.courses[place].smooth };
-            let (smooth, middle) = (self.smooth[place].velocity, self.movers[place].velocity);
-            let free = self.free[place];
-            let last = bodies.courses[place];
-            let course = &mut bodies.courses[place];
-            (course.middle, course.smooth, course.delay) = (middle, smooth, 0.0);
-            let pushed: Motion3 = std::array::from_fn(|k| smooth[k] - free[k]);
-            let jump = std::array::from_fn(|k| pushed[k] - span * last.pushed[k]);
-            let is_struck = farthest(bodies.natures[place].reach, jump) > JUMP * self.fall;
-            if !is_split && (is_struck || last.delay > 0.0) {
-                // It has been struck at the start of the step, or has its own time: part of a kick led there, and half a one leads on.
-                let acceleration = self.kicks.accelerations[place];
-                let after = std::array::from_fn(|k| smooth[k] - 0.5 * span * acceleration[k]);
-                (course.acceleration, course.pushed) = (acceleration, [0.0; 3]);
-                let node = self.node[place];
-                let until = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
-                let late = (0.5 - last.delay) * span;
-                let pushed = last.pushed.map(|acceleration| late * acceleration);
-                books.book_body((bodies, place), until, pushed, late, false);
-                books.book_blow(bodies.kinetic_energy(place, after) - bodies.kinetic_energy(place, node));
-                let since: Motion3 = std::array::from_fn(|k| 0.5 * (after[k] + smooth[k]));
-                books.book_body((bodies, place), since, [0.0; 3], 0.5 * span, true);
-                self.means[place] = std::array::from_fn(|k| 0.5 * (until[k] + since[k]));
-                continue;
-            }
-            course.acceleration = std::array::from_fn(|k| (smooth[k] - before[k]) / kick);
-            course.pushed = pushed.map(|change| change / kick);
-            let mean: Motion3 = std::array::from_fn(|k| 0.5 * (smooth[k] + before[k]));
-            books.book_body((bodies, place), mean, pushed, kick, true);
-            self.means[place] = mean;
-        }
-        let (members, _) = self.islands.get(island);
-        self.book_laws(members, kick, true, books);
     }
 }
 

@@ -9,14 +9,6 @@ use crate::stepping::settings::SteppingSettings;
 use crate::stepping::step::{From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
 use crate::stepping::sweeps::{Enough, Problem};
 use halfgap_collision::BodyId;
-use halfgap_contact::ImpactError;
-
-/// An impact that the law cannot resolve, and the bodies of its island.
-#[derive(Debug)]
-pub(super) struct StepError {
-    pub(super) bodies: Vec<u32>,
-    pub(super) source: ImpactError,
-}
 
 impl Stepper {
     /// Resolves the impact at the start of the step, if something in an island has come fast. True if there is one.
@@ -27,12 +19,12 @@ impl Stepper {
         from: From,
         island: usize,
         (books, report): (&mut StepBooks, &mut ImpactReport),
-    ) -> Result<bool, StepError> {
+    ) -> bool {
         if from == From::Before && !self.rows.strikes {
-            return Ok(false);
+            return false;
         }
         let (members, list) = self.islands.get(island);
-        let Some(slow) = self.slow_speed(list, (settings, span), from) else { return Ok(false) };
+        let Some(slow) = self.slow_speed(list, (settings, span), from) else { return false };
         let bodies = &scene.bodies;
         if from == From::Before {
             // The half of a kick that ends here.
@@ -50,16 +42,19 @@ impl Stepper {
         let before = energy(bodies, members, &self.node);
         books.note_kinetic(before);
         self.before.clone_from(&self.node);
-        if list.len() <= LARGEST_SMALL {
-            let outcome = self.impacts.resolve(
-                bodies,
-                (&mut self.rows.all, list),
-                &mut self.node,
-                (settings, slow),
-                books.counts().impacts,
-            );
-            outcome.map_err(|source| StepError { bodies: members.to_vec(), source })?;
-        } else {
+        let is_resolved = list.len() <= LARGEST_SMALL
+            && self
+                .impacts
+                .resolve(
+                    bodies,
+                    (&mut self.rows.all, list),
+                    &mut self.node,
+                    (settings, slow),
+                    books.counts().impacts,
+                )
+                .is_ok();
+        if !is_resolved {
+            // What the law has no answer for, such as rows that contradict each other, is as good as too large for it.
             self.strike_many(bodies, island, slow, settings.residual);
         }
         let (members, list) = self.islands.get(island);
@@ -78,7 +73,7 @@ impl Stepper {
             self.starts[body as usize] = self.node[body as usize];
             (self.movers[body as usize].velocity, self.free[body as usize]) = (kicked, kicked);
         }
-        Ok(true)
+        true
     }
 
     /// Resolves an impact of many rows at once by sweeps: each that has come faster than `slow` opens by its elasticity (Newton's law),

@@ -6,7 +6,8 @@
 //! Source: J. J. Moreau, CISM Courses 302 (1988) (sweeps).
 
 use crate::stepping::bodies::Motion3;
-use crate::stepping::rows::{Line, Mover, Roll, Row};
+use crate::stepping::rows::{Mover, Roll, Row};
+use crate::stepping::swept::Swept;
 
 /// Largest number of visits of a row on average: what they leave is corrected in the steps that follow.
 const MOST_VISITS: f64 = 200.0;
@@ -43,36 +44,6 @@ impl Enough {
     }
 }
 
-/// A row as sweeps need it: [`Row`] in three lines of memory.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Swept {
-    normal: [f64; 4],
-    slip: [f64; 4],
-    /// Along the normal and along the surface: what is asked of the rate less the rate [m/s], change of the rate by a unit impulse
-    /// [1/kg], the inverse of it, and the impulse [N s].
-    offsets: [f64; 2],
-    compliances: [f64; 2],
-    weights: [f64; 2],
-    impulses: [f64; 2],
-    /// Change of the rate along the surface by a unit impulse along the normal [1/kg].
-    coupling: f64,
-    /// Least impulse along the normal [N s].
-    least: f64,
-    /// As of [`Slip`](crate::stepping::rows::Slip).
-    bounds: [f64; 2],
-    /// Mean rates over the kick without the impulses, less the speeds of the surfaces [m/s].
-    free: [f64; 2],
-    /// Rates without the impulses [m/s].
-    kicked: [f64; 2],
-    /// Impulses before a round of sweeps, and the direction along which they go on after it [N s].
-    before: [f64; 2],
-    conjugate: [f64; 2],
-    places: [u32; 2],
-    /// Place in the list of the island.
-    listed: u32,
-}
-
 /// Buffers of sweeps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sweeps {
@@ -88,77 +59,6 @@ pub(super) struct Sweeps {
     changes: Vec<f64>,
     /// Rows of the present sweep.
     asked: Vec<u32>,
-}
-
-impl Swept {
-    fn of(row: &Row, listed: u32, movers: &[Mover], before: &[Motion3]) -> Self {
-        let (normal, slip) = (&row.normal, &row.slip.line);
-        let ends = row.ends().map(|place| &movers[place]);
-        let [p, q] = row.ends().map(|place| &before[place]);
-        let kicked = |line: &Line| line.rate(&ends[0].velocity, &ends[1].velocity);
-        let mean = |line: &Line| 0.5 * (line.rate(p, q) + kicked(line));
-        Self {
-            normal: normal.arms(),
-            slip: slip.arms(),
-            offsets: [normal.offset, slip.offset],
-            compliances: [normal.compliance, slip.compliance],
-            weights: [normal.weight, slip.weight],
-            impulses: [normal.impulse, slip.impulse],
-            coupling: slip.coupling(normal, ends),
-            least: if row.is_bilateral { f64::NEG_INFINITY } else { 0.0 },
-            bounds: row.slip.bounds,
-            free: [mean(normal), mean(slip) - row.slip.running],
-            kicked: [kicked(normal), kicked(slip)],
-            before: [normal.impulse, slip.impulse],
-            conjugate: [0.0; 2],
-            places: row.places,
-            listed,
-        }
-    }
-
-    #[inline(always)]
-    fn ends(&self) -> [usize; 2] {
-        self.places.map(|place| place as usize)
-    }
-
-    /// Adds to the velocities of its bodies what impulses along the normal and along the surface change.
-    #[inline(always)]
-    fn push(&self, movers: &mut [Mover], [normal, slip]: [f64; 2]) {
-        let [x, y, a, b]: [f64; 4] = std::array::from_fn(|k| self.normal[k] * normal + self.slip[k] * slip);
-        let [first, second] = self.ends();
-        // Nothing is written to what cannot move: rows would wait for each other at the floor.
-        let p = &mut movers[first];
-        if p.inverse_mass > 0.0 {
-            p.velocity[0] += p.inverse_mass * x;
-            p.velocity[1] += p.inverse_mass * y;
-            p.velocity[2] += p.inverse_moment * a;
-        }
-        let q = &mut movers[second];
-        if q.inverse_mass > 0.0 {
-            q.velocity[0] -= q.inverse_mass * x;
-            q.velocity[1] -= q.inverse_mass * y;
-            q.velocity[2] += q.inverse_moment * b;
-        }
-    }
-
-    /// Gets the impulses by which it does what is asked; returns the largest change of its rates that these make by themselves [m/s].
-    #[inline(always)]
-    fn visit(&mut self, movers: &mut [Mover]) -> f64 {
-        let [p, q] = self.ends().map(|place| movers[place].velocity);
-        let (x, y) = (p[0] - q[0], p[1] - q[1]);
-        let rate = |[jx, jy, ja, jb]: &[f64; 4]| (jx * x + jy * y) + (ja * p[2] + jb * q[2]);
-        let rates = [rate(&self.normal) + self.offsets[0], rate(&self.slip) + self.offsets[1]];
-        let pressing = (self.impulses[0] - rates[0] * self.weights[0]).max(self.least);
-        let pressed = pressing - self.impulses[0];
-        let wanted = self.impulses[1] - (rates[1] + self.coupling * pressed) * self.weights[1];
-        let [sticking, slipping] = self.bounds.map(|bound| bound * pressing.max(0.0));
-        let bound = if wanted.abs() <= sticking { sticking } else { slipping };
-        let held = wanted.min(bound).max(-bound);
-        let slipped = held - self.impulses[1];
-        self.impulses = [pressing, held];
-        self.push(movers, [pressed, slipped]);
-        (pressed * self.compliances[0]).abs().max((slipped * self.compliances[1]).abs())
-    }
 }
 
 impl Sweeps {

@@ -11,7 +11,6 @@ use crate::stepping::rows::Source;
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
 use crate::stepping::step::{From, Scene, Stepper};
-use crate::stepping::striking::StepError;
 use crate::stepping::ties::Ties;
 use crate::system::EventDriven;
 use crate::time::Time;
@@ -39,7 +38,6 @@ pub struct SteppingSystem {
     impact: ImpactReport,
     fresh: ImpactReport,
     changes: ContactChanges,
-    failure: Option<AdvanceError>,
 }
 
 impl SteppingSystem {
@@ -47,7 +45,7 @@ impl SteppingSystem {
     /// connectors fit the states: neither is checked.
     ///
     /// # Errors
-    /// Parts or settings out of range, or an impact at the start that cannot be resolved.
+    /// Parts or settings out of range.
     pub fn new(parts: RigidParts, settings: SteppingSettings, start: Time) -> Result<Self, AdvanceError> {
         parts.check(&settings.rigid, start)?;
         settings.check()?;
@@ -73,18 +71,17 @@ impl SteppingSystem {
             impact: ImpactReport::default(),
             fresh: ImpactReport::default(),
             changes: ContactChanges::default(),
-            failure: None,
         };
-        system.begin(From::Start)?;
+        system.begin(From::Start);
         Ok(system)
     }
 
     /// Begins the step at the present node; tells of an impact there.
-    pub(super) fn begin(&mut self, from: From) -> Result<Option<Handled>, AdvanceError> {
+    pub(super) fn begin(&mut self, from: From) -> Option<Handled> {
         let time = self.node.seconds();
         let hits = self.books.counts().impacts;
         self.fresh.begin(self.node);
-        let outcome = self.stepper.begin(
+        self.stepper.begin(
             &mut self.scene,
             (&self.settings, time, self.settings.step),
             from,
@@ -93,14 +90,8 @@ impl SteppingSystem {
         if self.books.counts().impacts > hits {
             std::mem::swap(&mut self.impact, &mut self.fresh);
         }
-        outcome.map_err(|StepError { bodies, source }| {
-            let bodies = bodies.into_iter().map(BodyId).collect();
-            let error = AdvanceError::Impact { time, bodies, between: None, source };
-            self.failure = Some(error.clone());
-            error
-        })?;
         let handled = Handled { time: self.node, impact: true };
-        Ok((self.books.counts().impacts > hits).then_some(handled))
+        (self.books.counts().impacts > hits).then_some(handled)
     }
 
     /// Brings all bodies to a time of the present step.
@@ -243,13 +234,6 @@ impl SteppingSystem {
         &self.changes
     }
 
-    /// Error of the present step, if it could not be made: the system cannot go on from it.
-    #[must_use]
-    #[inline]
-    pub fn failure(&self) -> Option<&AdvanceError> {
-        self.failure.as_ref()
-    }
-
     /// Force laws, in the order of their indices, those that were removed included.
     #[must_use]
     pub fn force_laws(&self) -> &[Arc<dyn ForceLaw>] {
@@ -274,20 +258,13 @@ impl EventDriven for SteppingSystem {
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
-        if self.failure.is_some() {
-            Some(self.node)
-        } else {
-            Some(self.node.plus(REACHED * self.settings.step))
-        }
+        Some(self.node.plus(REACHED * self.settings.step))
     }
 
-    /// Begins the next step. One that cannot be made ends the advance: each further call returns the same error.
+    /// Begins the next step.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
-        if let Some(failure) = &self.failure {
-            return Err(failure.clone());
-        }
         self.books.begin(0.0);
         self.go_to(self.node.plus(self.settings.step));
-        self.begin(From::Before)
+        Ok(self.begin(From::Before))
     }
 }

@@ -1,0 +1,68 @@
+//! How bodies set out from the start of a step, and what is booked of the kick that led to its middle.
+
+use crate::stepping::bodies::{Bodies, Motion3, farthest};
+use crate::stepping::books::StepBooks;
+use crate::stepping::step::Stepper;
+use halfgap_collision::BodyId;
+
+/// A body is struck at the start of a step if contacts push it by more than in the step before, and by more than this share of what
+/// forces make in a step [-]: the mean of the velocities before and after is then none that it ever has.
+const JUMP: f64 = 0.2;
+
+impl Stepper {
+    /// Books what laws do to bodies at the velocities in `means`.
+    pub(super) fn book_laws(&self, members: &[u32], span: f64, is_present: bool, books: &mut StepBooks) {
+        let velocity =
+            |body: BodyId| members.binary_search(&body.0).is_ok().then(|| self.means[body.index()]);
+        for (law, power) in self.kicks.powers(velocity) {
+            books.book_law(law, power, span, is_present);
+        }
+    }
+
+    /// Lets the bodies of an island go through the step with the velocities found.
+    pub(super) fn set_off(
+        &mut self,
+        bodies: &mut Bodies,
+        island: usize,
+        (kick, span): (f64, f64),
+        is_split: bool,
+        books: &mut StepBooks,
+    ) {
+        let (members, _) = self.islands.get(island);
+        for &body in members {
+            let place = body as usize;
+            let before = if is_split { self.node[place] } else { bodies.courses[place].smooth };
+            let (smooth, middle) = (self.smooth[place].velocity, self.movers[place].velocity);
+            let free = self.free[place];
+            let last = bodies.courses[place];
+            let course = &mut bodies.courses[place];
+            (course.middle, course.smooth, course.delay) = (middle, smooth, 0.0);
+            let pushed: Motion3 = std::array::from_fn(|k| smooth[k] - free[k]);
+            let jump = std::array::from_fn(|k| pushed[k] - span * last.pushed[k]);
+            let is_struck = farthest(bodies.natures[place].reach, jump) > JUMP * self.fall;
+            if !is_split && (is_struck || last.delay > 0.0) {
+                // It has been struck at the start of the step, or has its own time: part of a kick led there, and half a one leads on.
+                let acceleration = self.kicks.accelerations[place];
+                let after = std::array::from_fn(|k| smooth[k] - 0.5 * span * acceleration[k]);
+                (course.acceleration, course.pushed) = (acceleration, [0.0; 3]);
+                let node = self.node[place];
+                let until = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
+                let late = (0.5 - last.delay) * span;
+                let pushed = last.pushed.map(|acceleration| late * acceleration);
+                books.book_body((bodies, place), until, pushed, late, false);
+                books.book_blow(bodies.kinetic_energy(place, after) - bodies.kinetic_energy(place, node));
+                let since: Motion3 = std::array::from_fn(|k| 0.5 * (after[k] + smooth[k]));
+                books.book_body((bodies, place), since, [0.0; 3], 0.5 * span, true);
+                self.means[place] = std::array::from_fn(|k| 0.5 * (until[k] + since[k]));
+                continue;
+            }
+            course.acceleration = std::array::from_fn(|k| (smooth[k] - before[k]) / kick);
+            course.pushed = pushed.map(|change| change / kick);
+            let mean: Motion3 = std::array::from_fn(|k| 0.5 * (smooth[k] + before[k]));
+            books.book_body((bodies, place), mean, pushed, kick, true);
+            self.means[place] = mean;
+        }
+        let (members, _) = self.islands.get(island);
+        self.book_laws(members, kick, true, books);
+    }
+}
