@@ -25,13 +25,9 @@ impl Impacts {
         index: u64,
     ) -> Result<(), ImpactError> {
         self.listed.clear();
-        let rate_of = |row: &Row, velocities: &[Motion3]| {
-            let rate = row.rate(velocities);
-            row.strikes.map_or(rate, |speed| rate.min(-speed))
-        };
         let takes_part = |&&row: &&u32| {
             let row = &rows[row as usize];
-            row.is_bilateral || row.touches && rate_of(row, velocities) <= slow
+            row.is_bilateral || row.touches && row.striking_rate(velocities) <= slow
         };
         self.listed.extend(list.iter().filter(takes_part));
         let made = self.listed.iter().map(|&row| {
@@ -39,7 +35,7 @@ impl Impacts {
             let ids = row.bodies(bodies.count());
             let inertia = ids.map(|body| bodies.inertia(body));
             let kind = if row.is_bilateral { RowKind::Bilateral } else { RowKind::Unilateral };
-            let rate = rate_of(row, velocities);
+            let rate = row.striking_rate(velocities);
             CollisionRow {
                 elasticity: row.elasticity,
                 velocity_tol: slow,
@@ -66,7 +62,7 @@ impl Impacts {
         settings.rigid.impact_law.resolve(&mut self.impact, settings.rigid.order, index)?;
         for (place, &row) in self.listed.iter().enumerate() {
             let row = &mut rows[row as usize];
-            row.blow = self.impact.impulses()[place];
+            row.blows = [self.impact.impulses()[place], self.impact.friction_impulse(place)];
             let [a, b] = row.ends();
             let ids = row.bodies(bodies.count());
             let [mut p, mut q] = ids.map(|body| {
@@ -74,8 +70,8 @@ impl Impacts {
                 let velocity = velocities[if body.is_world() { bodies.count() } else { body.index() }];
                 Mover { velocity, inverse_mass, inverse_moment }
             });
-            row.normal.push(&mut p, &mut q, row.blow);
-            row.slip.line.push(&mut p, &mut q, self.impact.friction_impulse(place));
+            row.normal.push(&mut p, &mut q, row.blows[0]);
+            row.slip.line.push(&mut p, &mut q, row.blows[1]);
             (velocities[a], velocities[b]) = (p.velocity, q.velocity);
         }
         Ok(())

@@ -16,9 +16,6 @@ use halfgap_collision::{
 /// is found in the next step.
 pub(super) const FAST: f64 = 0.25;
 
-/// Share of a step before which a pair that touches already is not stopped again [-]: it must get on.
-const AT_ONCE: f64 = 1e-6;
-
 /// Largest number of searches of one pair in a step: it is stopped where the last one ended.
 const MOST_SEARCHES: u32 = 64;
 
@@ -133,7 +130,8 @@ impl Passing {
         let places = pair.bodies.map(BodyId::index);
         let is_still = |place: usize| self.stops[place] <= from || self.ways[place] == 0.0;
         let way: f64 = places.iter().filter(|&&place| !is_still(place)).map(|&place| self.ways[place]).sum();
-        if way <= FAST * bodies.thinner(places) {
+        let slow = FAST * bodies.thinner(places);
+        if way <= slow {
             return;
         }
         let are_discs = places.iter().all(|&place| bodies.natures[place].body.shape.features().len() == 1);
@@ -142,7 +140,7 @@ impl Passing {
             return;
         }
         // What has a row may sink a little, and no more than that: rows know nothing of what turns far.
-        let sunk = -(pair.deepest + FAST * bodies.thinner(places));
+        let sunk = -(pair.deepest + slow);
         self.rules.clear();
         self.rules.extend(
             pair.contacts
@@ -183,9 +181,11 @@ impl Passing {
                 }
             }
         }
-        if time <= AT_ONCE * span && !self.rules.is_empty() {
-            self.renewed.push(index);
-        } else {
+        if !self.rules.is_empty() {
+            // It touches and must get on: by as little as passes through nothing.
+            time = time.max(from + span * slow / way);
+        }
+        if time < span {
             self.meetings.push(Meeting { time, bodies: pair.bodies, pair: index });
         }
     }

@@ -41,7 +41,7 @@ pub(super) fn add_rows<'a>(
         let Some(collision) = record else { continue };
         let (rate_before, rate_after) =
             (row.strikes.map_or(row.rate(before), |speed| -speed), row.rate(after));
-        report.add(RowReport { collision, rate_before, rate_after, impulse: row.blow }, 0.0);
+        report.add(RowReport { collision, rate_before, rate_after, impulse: row.blows[0] }, 0.0);
     }
 }
 

@@ -168,8 +168,8 @@ pub(super) struct Row {
     pub(super) elasticity: f64,
     /// Speed [m/s] of the impact at the start of the step, if there is one.
     pub(super) strikes: Option<f64>,
-    /// Impulse [N s] along the normal of the impact at the start of the step; 0 without one.
-    pub(super) blow: f64,
+    /// Impulses [N s] along the normal and along the surface of the impact at the start of the step; 0 without one.
+    pub(super) blows: [f64; 2],
     /// Speed [m/s] of the impact at its end, if there is one.
     pub(super) arrives: Option<f64>,
     /// Point of the primary body at which the row acts [m].
@@ -200,6 +200,13 @@ impl Row {
     pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
         let [a, b] = self.ends();
         self.normal.rate(&velocities[a], &velocities[b])
+    }
+
+    /// J v [m/s] along the normal, or the speed of the impact against it if that is more.
+    #[inline]
+    pub(super) fn striking_rate(&self, velocities: &[Motion3]) -> f64 {
+        let rate = self.rate(velocities);
+        self.strikes.map_or(rate, |speed| rate.min(-speed))
     }
 
     /// J v [m/s] along the surface.

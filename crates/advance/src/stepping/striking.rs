@@ -52,8 +52,11 @@ impl Stepper {
                     (settings, slow),
                     books.counts().impacts,
                 )
-                .is_ok();
+                .is_ok()
+            && self.takes_energy(island);
         if !is_resolved {
+            let (members, _) = self.islands.get(island);
+            members.iter().for_each(|&body| self.node[body as usize] = self.before[body as usize]);
             // What the law has no answer for, such as rows that contradict each other, is as good as too large for it.
             self.strike_many(bodies, island, slow, settings.residual);
         }
@@ -76,6 +79,22 @@ impl Stepper {
         true
     }
 
+    /// True if what moves after an impact has no more energy than before, seen from what drives it.
+    fn takes_energy(&self, island: usize) -> bool {
+        let (_, list) = self.islands.get(island);
+        let (mut work, mut size) = (0.0, 0.0);
+        for &row in list {
+            let row = &self.rows.all[row as usize];
+            let [normal, slip] = row.blows;
+            let closing = row.striking_rate(&self.before) + row.rate(&self.node);
+            let slipping = row.slip_rate(&self.before) + row.slip_rate(&self.node);
+            let done = [0.5 * normal * closing, slip * (0.5 * slipping - row.slip.running)];
+            work += done[0] + done[1];
+            size += done[0].abs() + done[1].abs();
+        }
+        work <= ROUNDED * size
+    }
+
     /// Resolves an impact of many rows at once by sweeps: each that has come faster than `slow` opens by its elasticity (Newton's law),
     /// or all just stop if that would give energy.
     fn strike_many(&mut self, bodies: &Bodies, island: usize, slow: f64, share: f64) {
@@ -87,7 +106,7 @@ impl Stepper {
         kept.clear();
         for &row in touching.iter() {
             let row = &mut rows.all[row as usize];
-            let rate = row.strikes.map_or(row.rate(node), |speed| row.rate(node).min(-speed));
+            let rate = row.striking_rate(node);
             let rebounds = if rate < -slow { row.elasticity * rate } else { 0.0 };
             kept.push([row.normal, row.slip.line]);
             (row.normal.offset, row.normal.impulse) = (rebounds, 0.0);
@@ -114,7 +133,7 @@ impl Stepper {
         }
         for (&row, [normal, slip]) in touching.iter().zip(kept.iter()) {
             let row = &mut rows.all[row as usize];
-            row.blow = row.normal.impulse;
+            row.blows = [row.normal.impulse, row.slip.line.impulse];
             (row.normal, row.slip.line) = (*normal, *slip);
         }
         for &body in members {
@@ -145,6 +164,9 @@ impl Stepper {
         (fastest > slow).then_some(slow)
     }
 }
+
+/// Share of the work of an impact that is rounding [-].
+const ROUNDED: f64 = 1e-6;
 
 /// Kinetic energy [J] of some bodies.
 fn energy(bodies: &Bodies, members: &[u32], velocities: &[Motion3]) -> f64 {
