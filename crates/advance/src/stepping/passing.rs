@@ -140,13 +140,13 @@ impl Passing {
             return;
         }
         // What has a row may sink a little, and no more than that: rows know nothing of what turns far.
-        let sunk = -(pair.deepest + slow);
+        let sunk = pair.deepest + slow;
         self.rules.clear();
         self.rules.extend(
             pair.contacts
                 .iter()
                 .filter(|contact| contact.is_listed)
-                .map(|contact| FeatureRule { features: contact.features, target: Some(sunk) }),
+                .map(|contact| FeatureRule { features: contact.features, target: Some(-sunk) }),
         );
         let flights = places.map(|place| {
             let course = &bodies.courses[place];
@@ -168,7 +168,8 @@ impl Passing {
             motion: &flights[side],
             offset: 0.0,
         });
-        let settings = SearchSettings::default();
+        // Where a corner with a row has sunk, another one may turn out the deeper.
+        let settings = SearchSettings { depth: sunk, ..SearchSettings::STANDARD };
         let search = PairSearch { a: &a, b: &b, tolerances, settings: &settings, rules: &self.rules };
         let mut time = from;
         for _ in 0..MOST_SEARCHES {

@@ -1,9 +1,12 @@
 //! Displacements that bring bodies which overlap, and connectors that have come apart, back to their gaps: the least in the metric of
 //! the masses, found by sweeps.
 
-use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::books::StepBooks;
+use crate::stepping::pairs::Pairs;
+use crate::stepping::passing::FAST;
 use crate::stepping::rows::{Mover, Row};
+use halfgap_collision::BodyId;
 
 /// Largest number of sweeps: what they leave is brought back in the next step.
 const MOST_SWEEPS: usize = 10;
@@ -58,8 +61,20 @@ impl Shifts {
         }
     }
 
-    /// Shifts the bodies, but lifts nothing by more energy than contacts have taken since they sank.
-    pub(super) fn apply(&mut self, bodies: &mut Bodies, books: &mut StepBooks) {
+    /// Shifts the bodies, but lifts nothing by more energy than contacts have taken since they sank, and pushes nothing through what is near.
+    pub(super) fn apply(&mut self, bodies: &mut Bodies, pairs: &Pairs, books: &mut StepBooks) {
+        for (place, mover) in self.movers.iter_mut().enumerate().take(bodies.count()) {
+            let way = farthest(bodies.natures[place].reach, mover.velocity);
+            if way > FAST * bodies.least_thickness {
+                let near =
+                    pairs.of(BodyId::from_index(place)).iter().map(|&pair| pairs.all()[pair as usize].bodies);
+                let thinnest = near
+                    .map(|pair| bodies.thinner(pair.map(BodyId::index)))
+                    .fold(bodies.natures[place].thickness, f64::min);
+                let share = (FAST * thinnest / way).min(1.0);
+                mover.velocity = mover.velocity.map(|shift| share * shift);
+            }
+        }
         let lifts: f64 =
             (0..bodies.count()).map(|place| lift(bodies, place, self.movers[place].velocity)).sum();
         let share = if lifts > books.spare() { books.spare() / lifts } else { 1.0 };

@@ -130,7 +130,7 @@ impl Stepper {
             self.advance_island(scene, (settings, span), from, island, (books, report));
         }
         if shifts {
-            self.shifts.apply(&mut scene.bodies, books);
+            self.shifts.apply(&mut scene.bodies, &scene.pairs, books);
         }
         if settings.rigid.collisions {
             let Scene { bodies, pairs, ties, .. } = scene;
