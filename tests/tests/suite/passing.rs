@@ -59,7 +59,10 @@ fn nothing_passes_through_a_thin_wall_at_300_metres_a_second() {
     for seed in 0..1000 {
         let hertz = [60.0, 240.0, 960.0][seed as usize % 3];
         let mut world = shot(seed, hertz);
+        let start = world.energy().kinetic;
         world.advance_to(0.2, &mut |_| ()).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let kinetic = world.energy().kinetic;
+        assert!(kinetic <= 1.01 * start, "seed {seed}: {kinetic} J of {start} J");
         for body in world.bodies().skip(1) {
             let BodyState { position, .. } = world.state(body);
             assert!(position.x < WALL, "seed {seed}: {body:?} at {position}");

@@ -50,13 +50,14 @@ type Maker = (&'static str, fn() -> Scene);
 const FRAMES: f64 = 60.0;
 const FRICTION: f64 = 0.5;
 
-const ROUGH: [Maker; 7] = [
+const ROUGH: [Maker; 8] = [
     ("pile_200", || exact::read_pile("pile_200", 1.0 / FRAMES)),
     ("pyramid_20", || pyramid(20)),
     ("pyramid_50", || pyramid(50)),
     ("tower_100", tower),
     ("wall_1000", wall),
     ("hopper_2000", hopper),
+    ("heaps_1000", || heaps(1000)),
     ("heaps_10000", || heaps(10_000)),
 ];
 

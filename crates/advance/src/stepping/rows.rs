@@ -20,6 +20,17 @@ pub(super) struct Mover {
     pub(super) inverse_moment: f64,
 }
 
+impl Mover {
+    /// Product of two velocities in the metric of the masses [J]; 0 for what cannot move.
+    pub(super) fn product(&self, [x, y, spin]: Motion3, [u, v, turn]: Motion3) -> f64 {
+        if self.inverse_mass > 0.0 {
+            (x * u + y * v) / self.inverse_mass + spin * turn / self.inverse_moment
+        } else {
+            0.0
+        }
+    }
+}
+
 /// One direction in which a row acts: J = [x, y, a, -x, -y, b].
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]

@@ -39,6 +39,9 @@ const LOOSE: f64 = 1e-3;
 /// Number of rows up to which an island in which nothing is faster than forces make it in a step is solved exactly, if the forces of the
 /// last step tell its modes: a tower stands, where sweeps would let each of its contacts close a little.
 const LARGEST_QUIET: usize = 1000;
+/// Share of the energy by which a solution may add to it [-], beyond which it is none. What fixed bodies that move drive fast may be taken for
+/// such a one, and is then solved by sweeps.
+pub(super) const EXPLOSION: f64 = 1e-2;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 pub(super) const SLOW_STEPS: f64 = 2.0;
 
@@ -214,7 +217,7 @@ impl Stepper {
             books.note_solve();
             solve(
                 (rows, list, rolling),
-                (&mut self.movers, &self.starts),
+                (&mut self.movers, &self.starts, &self.free),
                 (&mut self.exact, &mut self.sweeps),
                 members,
                 means,
@@ -234,7 +237,7 @@ impl Stepper {
             rolling.retain(|&roll| rows.all[rows.rolls[roll as usize].row as usize].touches);
             solve(
                 (rows, touching, rolling),
-                (&mut self.smooth, &self.starts),
+                (&mut self.smooth, &self.starts, &self.free),
                 (&mut self.exact, &mut self.sweeps),
                 members,
                 means,
@@ -284,10 +287,25 @@ struct Means {
     is_loose: bool,
 }
 
+/// True if contacts give bodies energy by more than the scheme may: rows that nothing can do together, such as that a body be to both sides
+/// of a wall, have solutions that are as large as the rows are nearly parallel.
+fn explodes(movers: &[Mover], members: &[u32], [before, free]: [&[Motion3]; 2]) -> bool {
+    let (mut work, mut energy) = (0.0, 0.0);
+    for &body in members {
+        let (place, mover) = (body as usize, &movers[body as usize]);
+        let after = mover.velocity;
+        let pushed = std::array::from_fn(|k| after[k] - free[place][k]);
+        let mean = std::array::from_fn(|k| 0.5 * (after[k] + before[place][k]));
+        work += mover.product(pushed, mean);
+        energy += mover.product(before[place], before[place]) + mover.product(free[place], free[place]);
+    }
+    work > EXPLOSION * energy
+}
+
 /// Finds the impulses of some rows of an island and of some that resist rolling, beginning with those that they have, for velocities without them.
 fn solve(
     (rows, list, rolling): (&mut Rows, &[u32], &[u32]),
-    (movers, before): (&mut [Mover], &[Motion3]),
+    (movers, before, free): (&mut [Mover], &[Motion3], &[Motion3]),
     (exact, sweeps): (&mut Exact, &mut Sweeps),
     members: &[u32],
     Means { from, is_quiet, span, slack, enough, is_loose }: Means,
@@ -300,7 +318,12 @@ fn solve(
         0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
         _ => None,
     };
-    let is_solved = effort.is_some_and(|effort| exact.solve(&mut problem, members, (span, slack), effort));
+    let mut is_solved =
+        effort.is_some_and(|effort| exact.solve(&mut problem, members, (span, slack), effort));
+    if is_solved && explodes(problem.movers, members, [before, free]) {
+        problem.forget(members, free);
+        is_solved = false;
+    }
     if !is_solved {
         sweeps.solve(&mut problem, enough);
     }

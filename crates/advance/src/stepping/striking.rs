@@ -6,7 +6,7 @@ use crate::stepping::books::StepBooks;
 use crate::stepping::kicks::kicked;
 use crate::stepping::report;
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::step::{From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
+use crate::stepping::step::{EXPLOSION, From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
 use crate::stepping::sweeps::{Enough, Problem};
 use halfgap_collision::BodyId;
 
@@ -53,7 +53,8 @@ impl Stepper {
                     books.counts().impacts,
                 )
                 .is_ok()
-            && self.takes_energy(island);
+            && self.takes_energy(island)
+            && energy(bodies, members, &self.node) <= (1.0 + EXPLOSION) * before;
         if !is_resolved {
             let (members, _) = self.islands.get(island);
             members.iter().for_each(|&body| self.node[body as usize] = self.before[body as usize]);

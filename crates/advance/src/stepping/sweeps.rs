@@ -27,6 +27,22 @@ pub(super) struct Problem<'a> {
     pub(super) before: &'a [Motion3],
 }
 
+impl Problem<'_> {
+    /// Takes all impulses back, so that bodies have their velocities without them.
+    pub(super) fn forget(&mut self, members: &[u32], free: &[Motion3]) {
+        for &row in self.list {
+            let row = &mut self.rows[row as usize];
+            (row.normal.impulse, row.slip.line.impulse) = (0.0, 0.0);
+        }
+        for &roll in self.rolling {
+            self.rolls[roll as usize].line.impulse = 0.0;
+        }
+        for &body in members {
+            self.movers[body as usize].velocity = free[body as usize];
+        }
+    }
+}
+
 /// What is enough of sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Enough {
