@@ -325,6 +325,6 @@ fn solve(
         is_solved = false;
     }
     if !is_solved {
-        sweeps.solve(&mut problem, enough);
+        sweeps.solve(&mut problem, members, enough);
     }
 }

@@ -124,7 +124,7 @@ impl Stepper {
             let (list, rolls) = (touching.as_slice(), &mut rows.rolls);
             let mut problem =
                 Problem { rows: &mut rows.all, list, rolls, rolling: &[], movers: smooth, before: node };
-            sweeps.solve(&mut problem, enough);
+            sweeps.solve(&mut problem, members, enough);
             let after = members
                 .iter()
                 .map(|&body| bodies.kinetic_energy(body as usize, smooth[body as usize].velocity));

@@ -71,7 +71,8 @@ pub(super) struct Sweeps {
     depths: Vec<u32>,
     /// First place of each depth.
     firsts: Vec<u32>,
-    /// What has been changed of the rates of each body since its rows were last asked for [m/s].
+    /// What has been changed of the rates of each body since its rows were last asked for [m/s]; that of all that cannot move is behind the
+    /// last, and no matter.
     changes: Vec<f64>,
     /// Rows of the present sweep.
     asked: Vec<u32>,
@@ -80,9 +81,9 @@ pub(super) struct Sweeps {
 impl Sweeps {
     /// Changes the velocities of an island, which do not include the impulses that its rows have, by better ones, until rates are
     /// off by no more than is enough, or the visits are used up. True if that is reached.
-    pub(super) fn solve(&mut self, problem: &mut Problem<'_>, enough: Enough) -> bool {
+    pub(super) fn solve(&mut self, problem: &mut Problem<'_>, members: &[u32], enough: Enough) -> bool {
         let Problem { rows, list, rolls, rolling, movers, before } = problem;
-        self.load(rows, list, movers, before);
+        self.load(rows, (list, members), movers, before);
         for row in &self.rows {
             row.push(movers, row.impulses);
         }
@@ -93,7 +94,7 @@ impl Sweeps {
             line.push(&mut p, &mut q, line.impulse);
             (movers[a], movers[b]) = (p, q);
         }
-        let is_solved = self.sweep(movers, enough, |swept, movers| {
+        let is_solved = self.sweep((movers, members), enough, |swept, movers| {
             if rolling.is_empty() {
                 return;
             }
@@ -111,10 +112,16 @@ impl Sweeps {
     }
 
     /// Takes over the rows of a list, each behind all before it that share a body that can move.
-    fn load(&mut self, rows: &[Row], list: &[u32], movers: &[Mover], before: &[Motion3]) {
+    fn load(
+        &mut self,
+        rows: &[Row],
+        (list, members): (&[u32], &[u32]),
+        movers: &[Mover],
+        before: &[Motion3],
+    ) {
         let Self { depths, firsts, asked, order, .. } = self;
-        depths.clear();
         depths.resize(movers.len(), 0);
+        members.iter().for_each(|&body| depths[body as usize] = 0);
         firsts.clear();
         asked.clear();
         for &row in list {
@@ -174,24 +181,24 @@ impl Sweeps {
 
     fn sweep(
         &mut self,
-        movers: &mut [Mover],
+        (movers, members): (&mut [Mover], &[u32]),
         enough: Enough,
         mut hold_rolling: impl FnMut(&[Swept], &mut [Mover]),
     ) -> bool {
         let Self { rows, changes, asked, .. } = self;
         let mut left = enough.visits * rows.len();
-        changes.clear();
-        changes.resize(movers.len(), 0.0);
+        changes.resize(movers.len() + 1, 0.0);
+        members.iter().for_each(|&body| changes[body as usize] = 0.0);
         for row in rows.iter_mut() {
             let change = row.visit(movers);
-            row.ends().into_iter().for_each(|body| changes[body] += change);
+            note(row, changes, change);
         }
         hold_rolling(rows, movers);
         let mut last = f64::INFINITY;
         loop {
             // Each round goes back over the rows that are asked, and forth over those that are then.
             for is_forward in [false, true] {
-                ask(rows, changes, enough.residual, asked);
+                ask(rows, (members, changes), enough.residual, asked);
                 if asked.is_empty() {
                     return true;
                 }
@@ -205,7 +212,7 @@ impl Sweeps {
                         row.before = row.impulses;
                     }
                     let change = row.visit(movers);
-                    row.ends().into_iter().for_each(|body| changes[body] += change);
+                    note(row, changes, change);
                 };
                 if is_forward {
                     asked.iter().for_each(|&index| visit(index));
@@ -217,6 +224,12 @@ impl Sweeps {
             last = go_on(rows, asked, movers, changes, last);
         }
     }
+}
+
+/// Notes a change of the rates of a row [m/s] for its bodies.
+#[inline(always)]
+fn note(row: &Swept, changes: &mut [f64], change: f64) {
+    row.noted.into_iter().for_each(|body| changes[body as usize] += change);
 }
 
 /// Goes on along the conjugate direction, given the square of the change in the round before; returns that of this one.
@@ -238,27 +251,29 @@ fn go_on(rows: &mut [Swept], asked: &[u32], movers: &mut [Mover], changes: &mut 
             row.push(movers, on);
             row.impulses = std::array::from_fn(|k| row.impulses[k] + on[k]);
             let change = (on[0] * row.compliances[0]).abs().max((on[1] * row.compliances[1]).abs());
-            row.ends().into_iter().for_each(|body| changes[body] += change);
+            note(row, changes, change);
         }
     }
     present
 }
 
 /// Lists the rows of bodies that others may have moved by more than a residual.
-fn ask(rows: &[Swept], changes: &mut [f64], residual: f64, asked: &mut Vec<u32>) {
+fn ask(rows: &[Swept], (members, changes): (&[u32], &mut [f64]), residual: f64, asked: &mut Vec<u32>) {
+    if let Some(fixed) = changes.last_mut() {
+        *fixed = 0.0;
+    }
     asked.clear();
     asked.resize(rows.len(), 0);
     let mut count = 0;
     for (index, row) in rows.iter().enumerate() {
-        let [a, b] = row.ends();
+        let [a, b] = row.noted.map(|body| body as usize);
         asked[count] = index as u32;
         count += usize::from(changes[a] + changes[b] > residual);
     }
     asked.truncate(count);
-    for change in changes {
-        if *change > 0.5 * residual {
-            *change = 0.0;
-        }
+    for &body in members {
+        let change = &mut changes[body as usize];
+        *change = if *change > 0.5 * residual { 0.0 } else { *change };
     }
 }
 

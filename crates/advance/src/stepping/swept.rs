@@ -31,6 +31,8 @@ pub(super) struct Swept {
     pub(super) before: [f64; 2],
     pub(super) conjugate: [f64; 2],
     pub(super) places: [u32; 2],
+    /// The places of those bodies that can move; behind the last for others.
+    pub(super) noted: [u32; 2],
     /// Place in the list of the island.
     pub(super) listed: u32,
 }
@@ -57,6 +59,9 @@ impl Swept {
             before: [normal.impulse, slip.impulse],
             conjugate: [0.0; 2],
             places: row.places,
+            noted: row.places.map(|place| {
+                if movers[place as usize].inverse_mass > 0.0 { place } else { movers.len() as u32 }
+            }),
             listed,
         }
     }
