@@ -41,6 +41,8 @@ pub(super) struct Course {
     pub(super) acceleration: Motion3,
     /// The part of it that is due to contacts and connectors.
     pub(super) pushed: Motion3,
+    /// What these make of the velocity in a step, be it all at once or not.
+    pub(super) push: Motion3,
     /// Share of the step that it does not go [-]: it stops where it would pass through something, and its own time stands still.
     pub(super) delay: f64,
 }

@@ -38,13 +38,19 @@ impl Stepper {
             let course = &mut bodies.courses[place];
             (course.middle, course.smooth, course.delay) = (middle, smooth, 0.0);
             let pushed: Motion3 = std::array::from_fn(|k| smooth[k] - free[k]);
-            let jump = std::array::from_fn(|k| pushed[k] - span * last.pushed[k]);
+            course.push = pushed.map(|change| span / kick * change);
+            let jump = std::array::from_fn(|k| course.push[k] - last.push[k]);
             let is_struck = farthest(bodies.natures[place].reach, jump) > JUMP * self.fall;
             if !is_split && (is_struck || last.delay > 0.0) {
-                // It has been struck at the start of the step, or has its own time: part of a kick led there, and half a one leads on.
+                // It has been struck at the start of the step, or has its own time: part of a kick led there, and half a one leads on, or as
+                // much of it as it is not held against.
                 let acceleration = self.kicks.accelerations[place];
-                let after = std::array::from_fn(|k| smooth[k] - 0.5 * span * acceleration[k]);
-                (course.acceleration, course.pushed) = (acceleration, [0.0; 3]);
+                let kick: Motion3 = acceleration.map(|acceleration| 0.5 * span * acceleration);
+                let since_mean = std::array::from_fn(|k| 0.5 * (smooth[k] - before[k]));
+                let share = share_along(kick, since_mean);
+                let after = std::array::from_fn(|k| smooth[k] - share * kick[k]);
+                course.acceleration = acceleration.map(|acceleration| share * acceleration);
+                course.pushed = acceleration.map(|acceleration| (share - 1.0) * acceleration);
                 let node = self.node[place];
                 let until = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
                 let late = (0.5 - last.delay) * span;
@@ -52,7 +58,8 @@ impl Stepper {
                 books.book_body((bodies, place), until, pushed, late, false);
                 books.book_blow(bodies.kinetic_energy(place, after) - bodies.kinetic_energy(place, node));
                 let since: Motion3 = std::array::from_fn(|k| 0.5 * (after[k] + smooth[k]));
-                books.book_body((bodies, place), since, [0.0; 3], 0.5 * span, true);
+                let held = kick.map(|kick| (share - 1.0) * kick);
+                books.book_body((bodies, place), since, held, 0.5 * span, true);
                 self.means[place] = std::array::from_fn(|k| 0.5 * (until[k] + since[k]));
                 continue;
             }
@@ -65,4 +72,11 @@ impl Stepper {
         let (members, _) = self.islands.get(island);
         self.book_laws(members, kick, true, books);
     }
+}
+
+/// Share of a motion, from none to all of it, that comes nearest to another one.
+fn share_along(motion: Motion3, other: Motion3) -> f64 {
+    let product = |p: Motion3, q: Motion3| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let square = product(motion, motion);
+    if square > 0.0 { (product(motion, other) / square).clamp(0.0, 1.0) } else { 0.0 }
 }
