@@ -22,6 +22,7 @@ fn engines() -> Vec<Box<dyn Engine>> {
             tuning: Tuning::Stock,
             joints: Joints::Impulse,
         }),
+        halfgap(60.0, 0.3),
         halfgap(60.0, 1e-1),
         halfgap(60.0, 1e-2),
         halfgap(120.0, 1e-2),

@@ -28,6 +28,7 @@ pub(super) struct Passing {
     /// Times at which pairs first touch.
     meetings: Vec<Meeting>,
     rules: Vec<FeatureRule>,
+    /// Bodies that a meeting stops: those that meet, and what is tied to them.
     stopped: Vec<u32>,
     /// Pairs whose contacts are to be found anew.
     renewed: Vec<u32>,
@@ -75,10 +76,15 @@ impl Passing {
             self.renewed.push(pair);
             self.stopped.clear();
             for body in met {
-                self.stop_at(bodies, ties, body, time, span);
+                self.stop_at(bodies, body, time, span);
             }
-            for index in 0..self.stopped.len() {
-                let body = BodyId(self.stopped[index]);
+            let mut next = 0;
+            while let Some(&body) = self.stopped.get(next) {
+                next += 1;
+                let body = BodyId(body);
+                for connector in ties.all.iter().filter(|connector| connector.bodies().contains(&body)) {
+                    connector.bodies().into_iter().for_each(|other| self.stop_at(bodies, other, time, span));
+                }
                 self.meetings.retain(|meeting| !meeting.bodies.contains(&body));
                 for &pair in pairs.of(body) {
                     self.meet(bodies, (pair, &pairs.all()[pair as usize]), tolerances, (time, span));
@@ -96,26 +102,18 @@ impl Passing {
         }
     }
 
-    /// Takes the earliest meeting of which a body has not been stopped.
+    /// Takes the earliest meeting.
     fn next_meeting(&mut self) -> Option<Meeting> {
         let earliest = (0..self.meetings.len())
             .min_by(|&i, &j| self.meetings[i].time.total_cmp(&self.meetings[j].time))?;
         Some(self.meetings.swap_remove(earliest))
     }
 
-    /// Stops a body, and what is tied to it, unless it has been stopped before.
-    fn stop_at(&mut self, bodies: &Bodies, ties: &Ties, body: BodyId, time: f64, span: f64) {
-        if bodies.is_fixed(body) || self.stops[body.index()] < span {
-            return;
-        }
-        self.stops[body.index()] = time;
-        self.stopped.push(body.0);
-        for connector in ties.all.iter().filter(|connector| connector.bodies().contains(&body)) {
-            for other in connector.bodies() {
-                if other != body {
-                    self.stop_at(bodies, ties, other, time, span);
-                }
-            }
+    /// Stops a body unless it has been stopped before.
+    fn stop_at(&mut self, bodies: &Bodies, body: BodyId, time: f64, span: f64) {
+        if !bodies.is_fixed(body) && self.stops[body.index()] >= span {
+            self.stops[body.index()] = time;
+            self.stopped.push(body.0);
         }
     }
 

@@ -257,7 +257,7 @@ fn go_on(rows: &mut [Swept], asked: &[u32], movers: &mut [Mover], changes: &mut 
     present
 }
 
-/// Lists the rows of bodies that others may have moved by more than a residual.
+/// Lists the rows of bodies that others may have moved by more than half of a residual: no other row is off by more than all of it.
 fn ask(rows: &[Swept], (members, changes): (&[u32], &mut [f64]), residual: f64, asked: &mut Vec<u32>) {
     if let Some(fixed) = changes.last_mut() {
         *fixed = 0.0;
@@ -268,7 +268,7 @@ fn ask(rows: &[Swept], (members, changes): (&[u32], &mut [f64]), residual: f64, 
     for (index, row) in rows.iter().enumerate() {
         let [a, b] = row.noted.map(|body| body as usize);
         asked[count] = index as u32;
-        count += usize::from(changes[a] + changes[b] > residual);
+        count += usize::from(changes[a].max(changes[b]) > 0.5 * residual);
     }
     asked.truncate(count);
     for &body in members {
