@@ -49,13 +49,6 @@ pub fn run(engine: &dyn Engine, scene: &Scene) -> Result<PileRun, EngineError> {
         longest = longest.max(took);
         session.write_states(&mut states);
         deepest = deepest.max(session.penetration());
-        if std::env::var("LEAK").is_ok() {
-            for (i, st) in states.iter().enumerate() {
-                if st.position.y < 0.02 && i > 2 {
-                    eprintln!("{frame} {i} {:?} {:?} {}", st.position, st.velocity, scene.bodies[i].name);
-                }
-            }
-        }
         let now = scene.energy(&states);
         gain = gain.max(now - energy);
         energy = now;

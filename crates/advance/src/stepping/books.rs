@@ -98,7 +98,7 @@ impl StepBooks {
 
     /// Energy [J] that contacts have taken in the step before, and blows at its end: a projection may give it back.
     pub(super) fn spare(&self) -> f64 {
-        (1.0 * self.spare + self.blown).max(0.0)
+        (self.spare + self.blown).max(0.0)
     }
 
     pub(super) fn book_projection(&mut self, change: f64) {

@@ -233,7 +233,7 @@ fn add_contact(
         normal: Line::new(kinematics.jacobian, inertia, gap.max(0.0) / span + bend * kinematics.gamma),
         slip: Slip::default(),
         gap,
-        gamma: kinematics.gamma,
+        gamma: if bend > 0.0 { kinematics.gamma } else { 0.0 },
         elasticity: *elasticity,
         strikes: contact.arrival,
         blows: [0.0; 2],

@@ -8,7 +8,8 @@ use crate::stepping::contacts::Contact;
 use halfgap_collision::{BodyId, BroadPhase};
 use halfgap_geometry::Aabb;
 
-/// Margin of a box, as a fraction of the reach of its body [-]: a body at rest is looked up once, one that moves once in some steps.
+/// Margin of a box beyond the ways of two steps, as a fraction of the reach of its body [-]: a body at rest is looked up once, one that moves
+/// once in two steps or more.
 const MARGIN: f64 = 0.1;
 
 /// A pair of bodies.

@@ -21,10 +21,10 @@ pub(super) struct Mover {
 }
 
 impl Mover {
-    /// Product of two velocities in the metric of the masses [J]; 0 for what cannot move.
-    pub(super) fn product(&self, [x, y, spin]: Motion3, [u, v, turn]: Motion3) -> f64 {
+    /// Kinetic energy [J] at a velocity; 0 for what cannot move.
+    pub(super) fn energy(&self, [x, y, spin]: Motion3) -> f64 {
         if self.inverse_mass > 0.0 {
-            (x * u + y * v) / self.inverse_mass + spin * turn / self.inverse_moment
+            0.5 * ((x * x + y * y) / self.inverse_mass + spin * spin / self.inverse_moment)
         } else {
             0.0
         }
@@ -226,6 +226,15 @@ impl Row {
         self.slip.line.rate(&velocities[a], &velocities[b])
     }
 
+    /// Adds to the balance of some rows what impulses along the normal and along the surface do, if `rates` are the sums of those before and
+    /// after them.
+    pub(super) fn weigh(&self, [normal, slip]: [f64; 2], rates: [f64; 2], balance: &mut Balance) {
+        for done in [0.5 * normal * rates[0], slip * (0.5 * rates[1] - self.slip.running)] {
+            balance.work += done;
+            balance.size += done.abs();
+        }
+    }
+
     /// Adds to the velocities what the impulses of the row change.
     #[inline]
     pub(super) fn push_impulses(&self, movers: &mut [Mover]) {
@@ -236,6 +245,27 @@ impl Row {
             self.slip.line.push(&mut p, &mut q, self.slip.line.impulse);
         }
         (movers[a], movers[b]) = (p, q);
+    }
+}
+
+/// Work [J] of the impulses of some rows, seen from what drives them, and the sum of its parts without their signs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Balance {
+    work: f64,
+    size: f64,
+}
+
+/// Share of the energy before by which a solution may add to it [-]: the scheme is of second order, and smooth motions go to and fro about
+/// their energy. Rows that nothing can do together, such as that a body be to both sides of a wall, have solutions that are as large as
+/// they are nearly parallel.
+const EXPLOSION: f64 = 1e-2;
+/// Share of the parts of a work that is rounding [-].
+const ROUNDING: f64 = 1e-12;
+
+impl Balance {
+    /// True if that is more than a solution may give to bodies that had an energy [J] before.
+    pub(super) fn explodes(&self, energy: f64) -> bool {
+        self.work > EXPLOSION * energy + ROUNDING * self.size
     }
 }
 

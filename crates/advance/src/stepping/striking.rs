@@ -5,8 +5,9 @@ use crate::stepping::bodies::{Bodies, Motion3};
 use crate::stepping::books::StepBooks;
 use crate::stepping::kicks::kicked;
 use crate::stepping::report;
+use crate::stepping::rows::Balance;
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::step::{EXPLOSION, From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
+use crate::stepping::step::{From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
 use crate::stepping::sweeps::{Enough, Problem};
 use halfgap_collision::BodyId;
 
@@ -53,8 +54,7 @@ impl Stepper {
                     books.counts().impacts,
                 )
                 .is_ok()
-            && self.takes_energy(island)
-            && energy(bodies, members, &self.node) <= (1.0 + EXPLOSION) * before;
+            && !self.balance(island).explodes(before);
         if !is_resolved {
             let (members, _) = self.islands.get(island);
             members.iter().for_each(|&body| self.node[body as usize] = self.before[body as usize]);
@@ -80,20 +80,17 @@ impl Stepper {
         true
     }
 
-    /// True if what moves after an impact has no more energy than before, seen from what drives it.
-    fn takes_energy(&self, island: usize) -> bool {
+    /// What the blows of an island did.
+    fn balance(&self, island: usize) -> Balance {
+        let mut balance = Balance::default();
         let (_, list) = self.islands.get(island);
-        let (mut work, mut size) = (0.0, 0.0);
         for &row in list {
             let row = &self.rows.all[row as usize];
-            let [normal, slip] = row.blows;
-            let closing = row.striking_rate(&self.before) + row.rate(&self.node);
+            let closing = row.rate(&self.before) + row.rate(&self.node);
             let slipping = row.slip_rate(&self.before) + row.slip_rate(&self.node);
-            let done = [0.5 * normal * closing, slip * (0.5 * slipping - row.slip.running)];
-            work += done[0] + done[1];
-            size += done[0].abs() + done[1].abs();
+            row.weigh(row.blows, [closing, slipping], &mut balance);
         }
-        work <= ROUNDED * size
+        balance
     }
 
     /// Resolves an impact of many rows at once by sweeps: each that has come faster than `slow` opens by its elasticity (Newton's law),
@@ -165,9 +162,6 @@ impl Stepper {
         (fastest > slow).then_some(slow)
     }
 }
-
-/// Share of the work of an impact that is rounding [-].
-const ROUNDED: f64 = 1e-6;
 
 /// Kinetic energy [J] of some bodies.
 fn energy(bodies: &Bodies, members: &[u32], velocities: &[Motion3]) -> f64 {

@@ -5,7 +5,7 @@
 use crate::stepping::bodies::Motion3;
 use crate::stepping::rows::{Line, Mover, Row};
 
-/// A row as sweeps need it: [`Row`] in three lines of memory.
+/// A row as sweeps need it: [`Row`] without what they do not read.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Swept {
