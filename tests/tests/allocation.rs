@@ -166,3 +166,26 @@ fn a_pendulum_that_hits_a_wall_again_and_again_allocates_nothing() {
     assert!(impacts > 20, "{impacts} impacts");
     assert_eq!(allocations, 0, "over {impacts} impacts");
 }
+
+/// A block that a drum turns over and over.
+fn drum(run: &str) -> World {
+    world_of(&format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"drum\"\nrun = {{ duration = 300.0, strategy = \"steps\", {run} }}\n\
+         force = [{{ gravity = {{ acceleration = [0.0, -10.0] }} }}]\n\
+         [[body]]\nname = \"drum\"\nfixed = true\nfriction = 1.5\nmotion = {{ angular_velocity = 0.5 }}\n\
+         shape = {{ ring = {{ outer = 2.2, inner = 2.0 }} }}\n\
+         [[body]]\nname = \"block\"\nmass = 1.0\nelasticity = 0.0\nfriction = 1.5\n\
+         shape = {{ block = {{ width = 0.8, height = 0.6 }} }}\n"
+    ))
+}
+
+#[test]
+fn steps_of_one_length_and_chosen_ones_allocate_nothing() {
+    for run in ["time_step = 0.01, tolerance = 1e-2", "tolerance = 1e-2"] {
+        let mut world = drum(run);
+        let (allocations, events) = allocations(&mut world, 100.0, 200.0);
+        println!("{run}: {allocations} allocations over {events} events");
+        assert!(events > 100, "{run}: {events} changes");
+        assert_eq!(allocations, 0, "{run}: over {events} events");
+    }
+}

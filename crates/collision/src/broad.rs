@@ -114,7 +114,7 @@ struct Leaf {
 }
 
 /// A balanced tree of boxes, one for each body.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct BroadPhase {
     nodes: Vec<Node>,
@@ -125,6 +125,23 @@ pub struct BroadPhase {
     frontier: Vec<u32>,
     /// Leaf of each body, by index.
     leaves: Vec<Option<Leaf>>,
+}
+
+impl Clone for BroadPhase {
+    fn clone(&self) -> Self {
+        let mut tree = Self::default();
+        tree.clone_from(self);
+        tree
+    }
+
+    /// Uses the buffers again.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { nodes, root, free, frontier: _, leaves } = source;
+        self.nodes.clone_from(nodes);
+        self.root = *root;
+        self.free.clone_from(free);
+        self.leaves.clone_from(leaves);
+    }
 }
 
 impl BroadPhase {

@@ -106,7 +106,7 @@ pub use run_error::{Outcome, RunError};
 #[cfg(feature = "save")]
 pub use saving::{LoadError, SaveError};
 pub use settings::{
-    AdvanceBy, DEFAULT_TOLERANCE, Integrator, Stabilization, ToleranceOverrides, WorldSettings,
+    AdvanceBy, DEFAULT_TOLERANCE, Integrator, LONGEST_STEP, Stabilization, ToleranceOverrides, WorldSettings,
 };
 pub use world::{Energy, Inertia, Statistics, World};
 pub use world_error::{ConnectorName, WorldError};

@@ -1,6 +1,6 @@
 //! Settings of the advance, from the settings of a world and its scales.
 
-use crate::settings::{Integrator, Stabilization, ToleranceOverrides, WorldSettings};
+use crate::settings::{Integrator, LONGEST_STEP, Stabilization, ToleranceOverrides, WorldSettings};
 use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, Scales, StepControl};
 use halfgap_advance::stepping::SteppingSettings;
@@ -41,13 +41,20 @@ const MOST_SLACK: f64 = 1e-4;
 /// Returns the settings of an advance by steps.
 pub(crate) fn stepping_settings(
     rigid: RigidSettings,
-    (step, residual): (f64, f64),
+    (step, residual): (Option<f64>, f64),
     restitution: Restitution,
     scales: &Scales,
 ) -> SteppingSettings {
     let length = scales.smallest_radius.unwrap_or(scales.coordinate);
     let slack = (residual.min(MOST_SLACK) * length).max(rigid.tolerances.accuracy);
-    SteppingSettings { step, residual, slack, restitution, rigid }
+    SteppingSettings {
+        step: step.unwrap_or(LONGEST_STEP),
+        accuracy: step.is_none().then_some(residual * length),
+        residual,
+        slack,
+        restitution,
+        rigid,
+    }
 }
 
 /// Returns the thresholds of touching: those given in the settings, the others derived from the tolerance.

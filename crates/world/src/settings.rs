@@ -5,6 +5,8 @@ use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 
 /// Default of [`WorldSettings::tolerance`] [-].
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;
+/// Longest step [s] of those that are chosen by a tolerance: what a force law does in less than two of them is not seen.
+pub const LONGEST_STEP: f64 = 1.0 / 60.0;
 /// Default length [s] of fixed steps.
 const DEFAULT_FIXED_STEP: f64 = 0.025;
 
@@ -27,8 +29,9 @@ pub enum AdvanceBy {
     Events,
     /// Steps, in which contacts are problems of velocities: with friction, and for piles.
     Steps {
-        /// Length of the steps [s].
-        step: f64,
+        /// Length of the steps [s]; if `None`, it is chosen, up to [`LONGEST_STEP`], so that the ways of bodies in two steps are off by no
+        /// more than `residual` times the radius of the smallest movable body, as far as one step of twice the length can tell.
+        step: Option<f64>,
         /// Rate that sweeps over large islands may leave, as a fraction of the speed that forces give in a step [-].
         residual: f64,
     },

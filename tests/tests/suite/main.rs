@@ -25,5 +25,7 @@ mod spline_rails;
 mod stacks;
 mod start;
 mod steps;
+mod steps_chosen;
+mod steps_told;
 mod tolerance_slope;
 mod walls;

@@ -24,7 +24,7 @@ fn shape(random: &mut Random, size: f64) -> Shape {
 fn shot(seed: u64, hertz: f64) -> World {
     let mut random = Random::new(seed);
     let settings = WorldSettings {
-        strategy: AdvanceBy::Steps { step: 1.0 / hertz, residual: 1e-6 },
+        strategy: AdvanceBy::Steps { step: Some(1.0 / hertz), residual: 1e-6 },
         ..WorldSettings::default()
     };
     let surface = Surface { friction: 0.3, static_friction: 0.3, ..Surface::default() };

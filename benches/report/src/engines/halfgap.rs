@@ -39,7 +39,7 @@ impl Engine for Halfgap {
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
         let strategy = match self.step {
-            Some(step) => AdvanceBy::Steps { step, residual: self.tolerance },
+            Some(step) => AdvanceBy::Steps { step: Some(step), residual: self.tolerance },
             None => AdvanceBy::Events,
         };
         let world = build(scene, self.tolerance, strategy)?;

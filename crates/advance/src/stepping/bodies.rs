@@ -43,6 +43,8 @@ pub(super) struct Course {
     pub(super) pushed: Motion3,
     /// What these make of the velocity in a step, be it all at once or not.
     pub(super) push: Motion3,
+    /// Bound on what this has changed by since the step before [m/s].
+    pub(super) jump: f64,
     /// Share of the step that it does not go [-]: it stops where it would pass through something, and its own time stands still.
     pub(super) delay: f64,
 }
@@ -52,6 +54,12 @@ impl Course {
     pub(super) fn stop(&mut self) {
         let Self { position, angle, .. } = *self;
         *self = Self { position, angle, ..Self::default() };
+    }
+
+    /// Place at a time `since` [s] the start of a step of a length `span` [s].
+    pub(super) fn place_at(&self, since: f64, span: f64) -> Motion3 {
+        let BodyState { position, angle, .. } = self.state_at(since, span);
+        [position.x, position.y, angle]
     }
 
     /// State at a time `since` [s] the start of a step of a length `span` [s].
@@ -77,14 +85,24 @@ pub(super) fn farthest(reach: f64, [x, y, turn]: Motion3) -> f64 {
     DVec2::new(x, y).length() + turn.abs() * reach
 }
 
+/// What bodies do at the start of a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Places {
+    courses: Vec<Course>,
+    ways: Vec<f64>,
+    movings: Vec<Moving>,
+}
+
 /// All bodies; a fixed one has no inverse mass, and moves as it is told.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Bodies {
     pub(super) natures: Vec<Nature>,
     pub(super) courses: Vec<Course>,
-    /// Inverse inertia of each body in a step: damping resists an impulse by the half of the step in which it has acted.
+    /// Inverse inertia of each body in a step: damping resists an impulse by the half of the kick in which it has acted.
     in_step: Vec<InverseInertia>,
+    /// Length of the kick [s] that this holds for.
+    kick: f64,
     /// Bound on the way [m] that any point of each body has gone in all.
     pub(super) ways: Vec<f64>,
     /// Motions at the start of the present step: poses there, velocities as they are known before it.
@@ -94,8 +112,7 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// The bodies of a system whose steps last `span` [s].
-    pub(super) fn new(parts: Vec<BodyPart>, span: f64) -> Self {
+    pub(super) fn new(parts: Vec<BodyPart>) -> Self {
         let courses = parts.iter().map(|BodyPart { body, state, motion, .. }| {
             let velocity = match motion {
                 Some(motion) => [motion.velocity.x, motion.velocity.y, motion.angular_velocity],
@@ -118,19 +135,29 @@ impl Bodies {
             Nature { reach, thickness: 0.5 * area / reach, body, free_motion, surface }
         });
         let natures: Vec<Nature> = natures.collect();
-        let in_step = natures.iter().map(|Nature { body, free_motion, .. }| InverseInertia {
-            inverse_mass: body.inverse_mass / (1.0 + 0.5 * span * free_motion.linear_rate),
-            inverse_moment: body.inverse_moment / (1.0 + 0.5 * span * free_motion.angular_rate),
-        });
         let least_thickness = natures.iter().map(|nature| nature.thickness).fold(f64::INFINITY, f64::min);
         Self {
             least_thickness,
             ways: vec![0.0; courses.len()],
-            in_step: in_step.collect(),
+            in_step: Vec::new(),
+            kick: 0.0,
             natures,
             courses,
             movings,
         }
+    }
+
+    /// Sets the length of the kick [s] that leads to the middle of the step.
+    pub(super) fn set_kick(&mut self, kick: f64) {
+        if self.kick == kick {
+            return;
+        }
+        self.kick = kick;
+        self.in_step.clear();
+        self.in_step.extend(self.natures.iter().map(|Nature { body, free_motion, .. }| InverseInertia {
+            inverse_mass: body.inverse_mass / (1.0 + 0.5 * kick * free_motion.linear_rate),
+            inverse_moment: body.inverse_moment / (1.0 + 0.5 * kick * free_motion.angular_rate),
+        }));
     }
 
     /// Inverse inertia of a body, or of the background, against the impulses of a step.
@@ -177,6 +204,29 @@ impl Bodies {
     pub(super) fn mover(&self, place: usize, velocity: Motion3) -> Mover {
         let InverseInertia { inverse_mass, inverse_moment } = self.inertia_in_step(place);
         Mover { velocity, inverse_mass, inverse_moment }
+    }
+
+    /// Brings all bodies to a time `since` [s] the start of the present step of a length `span` [s].
+    pub(super) fn go_to(&mut self, since: f64, span: f64) {
+        for place in 0..self.count() {
+            let course = self.courses[place];
+            self.place(place, &course.state_at(since, span));
+            self.note_way(place, course.middle.map(|velocity| velocity * (1.0 - course.delay) * since));
+        }
+    }
+
+    /// Keeps what the bodies do in `places`.
+    pub(super) fn keep_places(&self, Places { courses, ways, movings }: &mut Places) {
+        courses.clone_from(&self.courses);
+        ways.clone_from(&self.ways);
+        movings.clone_from(&self.movings);
+    }
+
+    /// Lets the bodies do again what was kept.
+    pub(super) fn restore_places(&mut self, Places { courses, ways, movings }: &Places) {
+        self.courses.clone_from(courses);
+        self.ways.clone_from(ways);
+        self.movings.clone_from(movings);
     }
 
     /// Sets a place anew, with the velocity that is known there.

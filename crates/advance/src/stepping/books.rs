@@ -8,7 +8,7 @@ use crate::stepping::bodies::{Bodies, Motion3, Nature};
 use crate::stepping::rows::{Rows, Source};
 
 /// Sums up to the middle of the present step, and powers [W] within it.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct StepBooks {
     ledger: Ledger,
@@ -20,6 +20,20 @@ pub(super) struct StepBooks {
     taken: f64,
     spare: f64,
     blown: f64,
+}
+
+impl Clone for StepBooks {
+    fn clone(&self) -> Self {
+        Self { ledger: self.ledger.clone(), laws: self.laws.clone(), ..*self }
+    }
+
+    /// Uses the buffers again.
+    fn clone_from(&mut self, source: &Self) {
+        let (mut ledger, mut laws) = (std::mem::take(&mut self.ledger), std::mem::take(&mut self.laws));
+        ledger.clone_from(&source.ledger);
+        laws.clone_from(&source.laws);
+        *self = Self { ledger, laws, ..*source };
+    }
 }
 
 impl StepBooks {

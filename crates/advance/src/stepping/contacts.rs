@@ -28,6 +28,8 @@ pub(super) struct Contact {
     pub(super) forces: [f64; 3],
     /// It carried a force in the last step.
     pub(super) presses: bool,
+    /// Callers know that it carries a force.
+    pub(super) is_told: bool,
     /// Whether it sticks, and where.
     pub(super) hold: Hold,
     /// Angle [rad] of the normal with its whole turns.
@@ -42,6 +44,7 @@ impl Contact {
     /// Forgets what it carried.
     pub(super) fn let_go(&mut self) {
         (self.forces, self.presses, self.hold, self.arrival) = ([0.0; 3], false, Hold::Slips, None);
+        self.is_told = false;
     }
 
     fn new(features: [FeatureId; 2], normal: DVec2) -> Self {
@@ -49,6 +52,7 @@ impl Contact {
             features,
             forces: [0.0; 3],
             presses: false,
+            is_told: false,
             hold: Hold::Slips,
             normal_angle: turned(normal, 0.0),
             arrival: None,
@@ -88,7 +92,7 @@ pub(super) fn find_contacts(
     // What overlaps more than is looked for is known from before.
     for old in gone.iter() {
         let [p, q] = [a.0.feature(old.features[0]), b.0.feature(old.features[1])];
-        let sample = GapSample::measure_unbounded(p, &a.1.pose, q, &b.1.pose);
+        let sample = measure([a, b], old.features);
         let is_deep = |sample: &GapSample| {
             sample.gap < -nearness.depth
                 && sample.overrun <= nearness.overrun
@@ -104,7 +108,7 @@ pub(super) fn find_contacts(
         });
     }
     // What pressed and is gone has become one of those that are new.
-    for old in gone.iter().filter(|old| old.presses) {
+    for old in gone.iter_mut().filter(|old| old.presses) {
         let heirs = contacts.iter_mut().filter(|contact| {
             !contact.presses
                 && contact.arrival.is_none()
@@ -115,8 +119,15 @@ pub(super) fn find_contacts(
             // The coordinate is another one: its value is set where it is next measured.
             let hold = if old.hold == Hold::Slips { Hold::Slips } else { Hold::Here };
             *heir = Contact { features, hold, ..*old };
+            old.is_told = false;
         }
     }
+}
+
+/// Measures two features, however far apart they are; `None` if they have no normal.
+pub(super) fn measure([a, b]: [(&Shape, &Moving); 2], features: [FeatureId; 2]) -> Option<GapSample> {
+    let [p, q] = [a.0.feature(features[0]), b.0.feature(features[1])];
+    GapSample::measure_unbounded(p, &a.1.pose, q, &b.1.pose)
 }
 
 /// Measures the contacts of two bodies where they are now; false if one has run off its features, so that they are to be found anew.
@@ -129,7 +140,7 @@ pub(super) fn measure_contacts(
     found.clear();
     contacts.iter().all(|contact| {
         let [p, q] = [a.0.feature(contact.features[0]), b.0.feature(contact.features[1])];
-        let Some(sample) = GapSample::measure_unbounded(p, &a.1.pose, q, &b.1.pose) else { return false };
+        let Some(sample) = measure([a, b], contact.features) else { return false };
         found.push(Found { features: contact.features, sample });
         sample.overrun <= overrun && !has_left_arc(&sample, [(p, &a.1.pose), (q, &b.1.pose)])
     })

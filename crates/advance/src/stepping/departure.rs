@@ -19,19 +19,20 @@ impl Stepper {
         }
     }
 
-    /// Lets the bodies of an island go through the step with the velocities found.
+    /// Lets the bodies of an island go through the step with the velocities found, after a step of a length `last_span` [s], or from
+    /// velocities that are known at its start.
     pub(super) fn set_off(
         &mut self,
         bodies: &mut Bodies,
         island: usize,
         (kick, span): (f64, f64),
-        is_split: bool,
+        last_span: Option<f64>,
         books: &mut StepBooks,
     ) {
         let (members, _) = self.islands.get(island);
         for &body in members {
             let place = body as usize;
-            let before = if is_split { self.node[place] } else { bodies.courses[place].smooth };
+            let before = if last_span.is_none() { self.node[place] } else { bodies.courses[place].smooth };
             let (smooth, middle) = (self.smooth[place].velocity, self.movers[place].velocity);
             let free = self.free[place];
             let last = bodies.courses[place];
@@ -39,9 +40,14 @@ impl Stepper {
             (course.middle, course.smooth, course.delay) = (middle, smooth, 0.0);
             let pushed: Motion3 = std::array::from_fn(|k| smooth[k] - free[k]);
             course.push = pushed.map(|change| span / kick * change);
-            let jump = std::array::from_fn(|k| course.push[k] - last.push[k]);
-            let is_struck = farthest(bodies.natures[place].reach, jump) > JUMP * self.fall;
-            if !is_split && (is_struck || last.delay > 0.0) {
+            course.jump = last_span.map_or(0.0, |last_span| {
+                let jump = |k: usize| course.push[k] - span / last_span * last.push[k];
+                farthest(bodies.natures[place].reach, std::array::from_fn(jump))
+            });
+            let is_struck = course.jump > JUMP * self.fall;
+            if let Some(last_span) = last_span
+                && (is_struck || last.delay > 0.0)
+            {
                 // It has been struck at the start of the step, or has its own time: part of a kick led there, and half a one leads on, or as
                 // much of it as it is not held against.
                 let acceleration = self.kicks.accelerations[place];
@@ -53,7 +59,7 @@ impl Stepper {
                 course.pushed = acceleration.map(|acceleration| (share - 1.0) * acceleration);
                 let node = self.node[place];
                 let until = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
-                let late = (0.5 - last.delay) * span;
+                let late = (0.5 - last.delay) * last_span;
                 let pushed = last.pushed.map(|acceleration| late * acceleration);
                 books.book_body((bodies, place), until, pushed, late, false);
                 books.book_blow(bodies.kinetic_energy(place, after) - bodies.kinetic_energy(place, node));

@@ -88,11 +88,12 @@ impl SteppingSystem {
         act: impl FnOnce(&mut Scene, &mut StepBooks),
     ) -> Result<Option<Handled>, AdvanceError> {
         let time = time.max(self.node);
-        self.books.begin(time.since(self.node) - 0.5 * self.settings.step);
+        let since = time.since(self.node);
+        self.books.begin(since - 0.5 * self.span);
         self.go_to(time);
         self.scene.sleep.wake_all();
         act(&mut self.scene, &mut self.books);
-        Ok(self.begin(From::Start))
+        Ok(self.begin(From::Start(since)))
     }
 }
 

@@ -1,8 +1,8 @@
 //! Lists the rows of a step: contacts that bodies may make within it, and connectors.
 
-use crate::rigid::PairSurface;
+use crate::rigid::{PairSurface, RowForce};
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
-use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure_contacts};
+use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure, measure_contacts};
 use crate::stepping::pairs::{Pair, Pairs};
 use crate::stepping::passing::FAST;
 use crate::stepping::rows::{Line, Roll, Row, Rows, Slip, Source};
@@ -37,6 +37,8 @@ pub(super) struct Listing {
     #[cfg_attr(feature = "save", serde(skip))]
     found: Vec<Found>,
     gone: Vec<Contact>,
+    /// Contacts that end because they have no row in the step, with their last forces.
+    pub(super) ended: Vec<RowForce>,
     /// Whether each pair has been listed in the step.
     listed: Vec<bool>,
 }
@@ -46,6 +48,8 @@ pub(super) struct Listing {
 pub(super) struct Lengths {
     /// Length of the step [s].
     pub(super) span: f64,
+    /// Time since the start of the step before [s].
+    pub(super) since_last: f64,
     /// Gap at which bodies touch [m].
     pub(super) target_gap: f64,
     /// Error of positions that does not matter [m].
@@ -63,6 +67,7 @@ impl Listing {
         rows: &mut Rows,
     ) {
         rows.clear();
+        self.ended.clear();
         ties.follow(bodies);
         let Some(pairs) = pairs else {
             list_ties(bodies, ties, sleep, lengths, rows);
@@ -181,12 +186,18 @@ impl Listing {
             };
             find_contacts(sides, &nearness, &mut pair.contacts, &mut self.found, &mut self.gone);
         }
+        for old in self.gone.drain(..).filter(|old| old.is_told) {
+            let told = |sample| pair.told(old.features, &sample, old.forces[0]);
+            self.ended.extend(measure(sides, old.features).map(told));
+        }
         pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
         for (contact, found) in self.found.iter().enumerate() {
             pair.contacts[contact].is_listed = found.sample.gap <= way + lengths.target_gap;
             if pair.contacts[contact].is_listed {
                 add_contact(bodies, pair, (index, contact), &found.sample, lengths, rows);
             } else {
+                let Contact { is_told, features, forces, .. } = pair.contacts[contact];
+                self.ended.extend(is_told.then(|| pair.told(features, &found.sample, forces[0])));
                 pair.contacts[contact].let_go();
             }
         }
@@ -215,7 +226,7 @@ fn add_contact(
     let [primary, normal] = ids.map(|body| &bodies.movings[body.index()]);
     let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
     let kinematics = GapKinematics::of(sample, primary, normal);
-    let Lengths { span, target_gap, slack } = lengths;
+    let Lengths { span, since_last, target_gap, slack } = lengths;
     let gap = sample.gap - target_gap;
     // What turns far within a step is on no parabola.
     let turn = kinematics
@@ -255,7 +266,7 @@ fn add_contact(
         row.slip = Slip {
             line: Line::new(tangent.jacobian, inertia, bend * tangent.gamma - running),
             bounds: [sticking, surface.kinetic],
-            off: way_off(contact, &touch, span * running),
+            off: way_off(contact, &touch, since_last * running),
             running,
             elasticity: surface.tangential_elasticity,
         };
@@ -275,7 +286,7 @@ fn add_contact(
 }
 
 /// Way [m] along the surface from where a contact sticks. Where surfaces run, the place at which it sticks runs along by `run` [m]
-/// in each step.
+/// from step to step.
 fn way_off(contact: &mut Contact, touch: &Touch<'_>, run: f64) -> f64 {
     if contact.hold == Hold::Slips {
         return 0.0;

@@ -6,7 +6,7 @@
 //! `settings` · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
 //! remembered of where they touch · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `listing`: what contacts
 //! and connectors ask of velocities · `islands` · `exact`, `sweeps`, `swept`: impulses · `impacts` · `report`: what callers are told ·
-//! `projection`: back to the gaps · `passing`: what would pass through something · `sleep` · `memory` · `striking`, `departure`, `step`:
+//! `pacing`: how long steps are · `projection`: back to the gaps · `passing`: what would pass through something · `sleep` · `memory` · `striking`, `departure`, `step`:
 //! from one step to the next · `books` · `system`, `intervention`: what callers see and change.
 
 mod bodies;
@@ -20,6 +20,7 @@ mod islands;
 mod kicks;
 mod listing;
 mod memory;
+mod pacing;
 mod pairs;
 mod passing;
 mod projection;

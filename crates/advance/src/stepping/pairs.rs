@@ -13,7 +13,7 @@ use halfgap_geometry::Aabb;
 const MARGIN: f64 = 0.1;
 
 /// A pair of bodies.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pair {
     /// The bodies, the lesser first.
@@ -27,8 +27,20 @@ pub(super) struct Pair {
     pub(super) known_until: f64,
 }
 
+impl Clone for Pair {
+    fn clone(&self) -> Self {
+        Self { contacts: self.contacts.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let mut contacts = std::mem::take(&mut self.contacts);
+        contacts.clone_from(&source.contacts);
+        *self = Self { contacts, ..*source };
+    }
+}
+
 /// All pairs.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Pairs {
     all: Vec<Pair>,
@@ -38,9 +50,37 @@ pub(super) struct Pairs {
     /// Pairs that pass through each other, the lesser body first, sorted.
     excluded: Vec<(BodyId, BodyId)>,
     found: Vec<BodyId>,
+    /// Buffers of pairs that are no more.
+    spare: Vec<Vec<Contact>>,
     /// Way [m] in all up to which each body stays in its box.
     boxed_until: Vec<f64>,
     target_gap: f64,
+}
+
+impl Clone for Pairs {
+    fn clone(&self) -> Self {
+        let mut pairs = Self::default();
+        pairs.clone_from(self);
+        pairs
+    }
+
+    /// Uses the buffers again.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { all, of_body, broad, excluded, found: _, spare: _, boxed_until, target_gap } = source;
+        self.spare.extend(self.all.drain(all.len().min(self.all.len())..).map(|pair| pair.contacts));
+        let (known, further) = all.split_at(self.all.len());
+        self.all.clone_from_slice(known);
+        for pair in further {
+            let mut contacts = self.spare.pop().unwrap_or_default();
+            contacts.clone_from(&pair.contacts);
+            self.all.push(Pair { contacts, ..*pair });
+        }
+        self.of_body.clone_from(of_body);
+        self.broad.clone_from(broad);
+        self.excluded.clone_from(excluded);
+        self.boxed_until.clone_from(boxed_until);
+        self.target_gap = *target_gap;
+    }
 }
 
 impl Pairs {
@@ -100,13 +140,14 @@ impl Pairs {
         Some(boxed)
     }
 
-    /// Drops the pairs of a body whose boxes no longer overlap.
+    /// Drops the pairs of a body whose boxes no longer overlap, but for those whose contacts have yet to end.
     fn drop_far(&mut self, bodies: &Bodies, body: BodyId, boxed: &Aabb) {
         let mut next = 0;
         while let Some(&place) = self.of_body[body.index()].get(next) {
-            let [a, b] = self.all[place as usize].bodies;
-            let other = if a == body { b } else { a };
-            if self.broad.bounds(other).is_some_and(|bounds| bounds.overlaps(boxed)) {
+            let Pair { bodies: [a, b], contacts, .. } = &self.all[place as usize];
+            let other = if *a == body { *b } else { *a };
+            let is_told = contacts.iter().any(|contact| contact.is_told);
+            if is_told || self.broad.bounds(other).is_some_and(|bounds| bounds.overlaps(boxed)) {
                 next += 1;
             } else {
                 self.remove(bodies, place);
@@ -126,12 +167,14 @@ impl Pairs {
         let place = self.all.len() as u32;
         let natures: [&Nature; 2] = [a, b].map(|body| &bodies.natures[body.index()]);
         let surfaces: [&Surface; 2] = natures.map(|nature| &nature.surface);
+        let mut contacts = self.spare.pop().unwrap_or_default();
+        contacts.clear();
         let elasticity = natures[0].body.elasticity.min(natures[1].body.elasticity);
         self.all.push(Pair {
             bodies: [a, b],
             surface: PairSurface::of(surfaces),
             elasticity,
-            contacts: Vec::new(),
+            contacts,
             deepest: 0.0,
             known_until: f64::NEG_INFINITY,
         });
@@ -153,6 +196,6 @@ impl Pairs {
                 }
             }
         }
-        self.all.swap_remove(place as usize);
+        self.spare.push(self.all.swap_remove(place as usize).contacts);
     }
 }

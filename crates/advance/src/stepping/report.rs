@@ -1,12 +1,15 @@
-//! What callers are told of impacts.
+//! What callers are told of impacts, and of contacts that begin and end.
 
-use crate::rigid::{ImpactReport, RowReport};
+use crate::rigid::{ImpactReport, RowForce, RowReport};
 use crate::stepping::bodies::{Bodies, Motion3};
-use crate::stepping::rows::{Row, Source};
+use crate::stepping::contacts::measure;
+use crate::stepping::pairs::{Pair, Pairs};
+use crate::stepping::rows::{Row, Rows, Source};
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::step::Scene;
 use glam::DVec2;
-use halfgap_collision::{BodyState, Collision, ConnectorId, Moment, Moving, record_features};
+use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId, Moment, Moving, record_features};
+use halfgap_geometry::{FeatureId, GapSample};
 
 /// Adds the rows of an impact that have struck, with their rates before and after it.
 pub(super) fn add_rows<'a>(
@@ -42,6 +45,105 @@ pub(super) fn add_rows<'a>(
         let (rate_before, rate_after) =
             (row.strikes.map_or(row.rate(before), |speed| -speed), row.rate(after));
         report.add(RowReport { collision, rate_before, rate_after, impulse: row.blows[0] }, 0.0);
+    }
+}
+
+impl Row {
+    /// What callers are told of the row, which carries a force [N] along its normal.
+    pub(super) fn told(&self, (bodies, pairs): (&Bodies, &Pairs), force: f64) -> RowForce {
+        let (connector, features) = match self.source {
+            Source::Contact { pair, contact } => {
+                (None, Some(pairs.all()[pair as usize].contacts[contact as usize].features))
+            }
+            Source::Connector { connector, .. } => (Some(ConnectorId(connector)), None),
+        };
+        let [x, y, ..] = self.normal.jacobian();
+        RowForce {
+            bodies: self.bodies(bodies.count()),
+            connector,
+            features,
+            point: self.point,
+            normal: DVec2::new(x, y),
+            force,
+            bouncing: None,
+        }
+    }
+}
+
+impl Pair {
+    /// What callers are told of a contact without a row, which carries a force [N], where it is measured.
+    pub(super) fn told(&self, features: [FeatureId; 2], sample: &GapSample, force: f64) -> RowForce {
+        let [a, b] = self.bodies;
+        RowForce {
+            bodies: if sample.primary_is_a { [a, b] } else { [b, a] },
+            connector: None,
+            features: Some(features),
+            point: sample.point_primary,
+            normal: sample.normal,
+            force,
+            bouncing: None,
+        }
+    }
+}
+
+/// Forces of all rows of a step that carry one, and then those between bodies that sleep.
+pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
+    let Scene { bodies, pairs, ties, sleep, .. } = scene;
+    let sleeps = |body: BodyId| bodies.is_fixed(body) || sleep.is_asleep(body.index());
+    let mut all = Vec::new();
+    for row in rows.all.iter().filter(|row| !row.bodies(bodies.count()).into_iter().all(sleeps)) {
+        let force = match row.source {
+            Source::Contact { pair, contact } => {
+                pairs.all()[pair as usize].contacts[contact as usize].forces[0]
+            }
+            Source::Connector { connector, direction } => {
+                ties.memory[connector as usize].forces[direction as usize]
+            }
+        };
+        all.extend((force != 0.0).then(|| row.told((bodies, pairs), force)));
+    }
+    for pair in pairs.all().iter().filter(|pair| pair.bodies.into_iter().all(sleeps)) {
+        let sides = pair.bodies.map(|body| {
+            let place = body.index();
+            (&bodies.natures[place].body.shape, &bodies.movings[place])
+        });
+        for contact in pair.contacts.iter().filter(|contact| contact.is_told) {
+            let told = |sample| pair.told(contact.features, &sample, contact.forces[0]);
+            all.extend(measure(sides, contact.features).map(told));
+        }
+    }
+    let tied = ties.all.iter().zip(&ties.memory).enumerate();
+    for (index, (connector, tie)) in tied.filter(|(_, (tie, _))| tie.bodies().into_iter().all(sleeps)) {
+        for (direction, &force) in tie.forces.iter().enumerate().filter(|&(_, &force)| force != 0.0) {
+            let sample = ties.measure(bodies, index, direction);
+            let [x, y, ..] = sample.kinematics.jacobian;
+            all.push(RowForce {
+                bodies: connector.bodies(),
+                connector: Some(ConnectorId(index as u32)),
+                features: None,
+                point: sample.point_a,
+                normal: DVec2::new(x, y),
+                force,
+                bouncing: None,
+            });
+        }
+    }
+    all
+}
+
+/// A force that begins, or the last one of what ends [N].
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Change {
+    Begins(f64),
+    Ends(f64),
+}
+
+impl Change {
+    /// What callers are to be told of a unilateral row that carried a force `last` [N] and now carries `force`, if they do not know it yet.
+    pub(super) fn of(is_told: &mut bool, last: f64, force: f64) -> Option<Self> {
+        let carries = force > 0.0;
+        let change = if carries { Self::Begins(force) } else { Self::Ends(last) };
+        (std::mem::replace(is_told, carries) != carries).then_some(change)
     }
 }
 

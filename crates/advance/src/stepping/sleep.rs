@@ -17,7 +17,7 @@ const RESTING: f64 = 10.0;
 const FALLING: f64 = 0.5;
 
 /// Which bodies sleep.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Sleep {
     /// Number of steps for which each body has rested.
@@ -25,6 +25,21 @@ pub(super) struct Sleep {
     asleep: Vec<bool>,
     /// Buffer: bodies that have been woken, and whose neighbours have yet to be.
     woken: Vec<u32>,
+}
+
+impl Clone for Sleep {
+    fn clone(&self) -> Self {
+        let mut sleep = Self::default();
+        sleep.clone_from(self);
+        sleep
+    }
+
+    /// Uses the buffers again.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { rested, asleep, woken: _ } = source;
+        self.rested.clone_from(rested);
+        self.asleep.clone_from(asleep);
+    }
 }
 
 impl Sleep {

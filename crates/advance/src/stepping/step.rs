@@ -14,7 +14,7 @@
 //! Sources: J.-P. Ryckaert, G. Ciccotti, H. J. C. Berendsen, J. Comput. Phys. 23 (1977) (SHAKE); H. C. Andersen, J. Comput. Phys. 52
 //! (1983) (RATTLE); D. E. Stewart, J. C. Trinkle, Int. J. Numer. Meth. Engng. 39 (1996) (friction in the problem of velocities).
 
-use crate::rigid::{ForceLaws, ImpactReport};
+use crate::rigid::{ContactChanges, ForceLaws, ImpactReport};
 use crate::stepping::bodies::{Bodies, Course, Motion3, farthest};
 use crate::stepping::books::StepBooks;
 use crate::stepping::exact::{Effort, Exact};
@@ -31,6 +31,7 @@ use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
 use crate::stepping::sweeps::{Enough, Problem, Sweeps};
 use crate::stepping::ties::Ties;
+use crate::time::Time;
 
 /// Number of rows up to which an island is solved exactly, by whatever it takes.
 pub(super) const LARGEST_SMALL: usize = 60;
@@ -62,6 +63,8 @@ pub(super) struct Scene {
 pub(super) struct Stepper {
     pub(super) kicks: Kicks,
     listing: Listing,
+    /// Contacts, ropes and stops that begin or end to carry a force with the step.
+    pub(super) changes: ContactChanges,
     pub(super) rows: Rows,
     /// Speed that forces give in a step, and rate that is as good as none [m/s].
     pub(super) fall: f64,
@@ -95,12 +98,33 @@ pub(super) struct Stepper {
 }
 
 /// Where a step comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum From {
-    /// The step before, of the same length.
-    Before,
-    /// Velocities that are known at its start.
-    Start,
+    /// The step before, of a length [s].
+    Before(f64),
+    /// Velocities that are known at its start, at a time [s] after that of the step before.
+    Start(f64),
+}
+
+impl From {
+    /// True if velocities at the start of the step are known.
+    pub(super) fn is_start(self) -> bool {
+        matches!(self, Self::Start(_))
+    }
+
+    /// Time [s] since the start of the step before.
+    fn since_last(self) -> f64 {
+        let (Self::Before(since) | Self::Start(since)) = self;
+        since
+    }
+
+    /// Length of the kick [s] that leads to the middle of a step of a length `span` [s].
+    fn kick(self, span: f64) -> f64 {
+        match self {
+            Self::Before(last) => 0.5 * (last + span),
+            Self::Start(_) => 0.5 * span,
+        }
+    }
 }
 
 impl Stepper {
@@ -113,12 +137,15 @@ impl Stepper {
         (books, report): (&mut StepBooks, &mut ImpactReport),
     ) {
         self.kicks.find(&scene.bodies, &scene.laws, time);
+        scene.bodies.set_kick(if from.is_start() { span } else { from.kick(span) });
         self.find_free(&scene.bodies, span, from);
         let target_gap = settings.rigid.tolerances.target_gap;
-        let lengths = Lengths { span, target_gap, slack: settings.slack };
+        let lengths = Lengths { span, since_last: from.since_last(), target_gap, slack: settings.slack };
         let Scene { bodies, pairs, ties, sleep, .. } = scene;
         let pairs = settings.rigid.collisions.then_some(pairs);
         self.listing.list(bodies, (pairs, ties, sleep), &self.free, lengths, &mut self.rows);
+        self.changes.clear(Time::from_seconds(time));
+        self.changes.end.append(&mut self.listing.ended);
         // What the steps leave open anyway is not worth a shift.
         let slack = settings.slack.max(settings.residual * span * span * self.kicks.fastest());
         let shifts = self.rows.deepest > slack || self.rows.farthest_off > slack;
@@ -153,18 +180,17 @@ impl Stepper {
         self.node.push([0.0; 3]);
         self.free.clear();
         self.starts.clone_from(&self.node);
-        if from == From::Before {
+        if !from.is_start() {
             self.starts.iter_mut().zip(&bodies.courses).for_each(|(start, course)| *start = course.smooth);
         }
         for (place, nature) in bodies.natures.iter().enumerate() {
             let acceleration = self.kicks.accelerations[place];
-            self.free.push(if nature.body.is_fixed() {
-                bodies.courses[place].middle
-            } else if from == From::Before {
-                let Course { smooth, delay, .. } = bodies.courses[place];
-                kicked(&nature.free_motion, smooth, acceleration, (1.0 - delay) * span)
-            } else {
-                kicked(&nature.free_motion, self.node[place], acceleration, 0.5 * span)
+            let Course { middle, smooth, delay, .. } = bodies.courses[place];
+            let kick = from.kick(span);
+            self.free.push(match from {
+                _ if nature.body.is_fixed() => middle,
+                From::Before(last) => kicked(&nature.free_motion, smooth, acceleration, kick - delay * last),
+                From::Start(_) => kicked(&nature.free_motion, self.node[place], acceleration, kick),
             });
         }
         self.free.push([0.0; 3]);
@@ -186,8 +212,8 @@ impl Stepper {
         (books, report): (&mut StepBooks, &mut ImpactReport),
     ) {
         let is_struck = self.strike(scene, (settings, span), from, island, (books, report));
-        let is_split = is_struck || from == From::Start;
-        let kick = if is_split { 0.5 * span } else { span };
+        let is_split = is_struck || from.is_start();
+        let kick = if is_split { 0.5 * span } else { from.kick(span) };
         let (members, list) = self.islands.get(island);
         let is_loose = settings.residual > LOOSE;
         let quiet = if is_loose { CALM * self.fall } else { self.fall };
@@ -203,9 +229,9 @@ impl Stepper {
             for &row in list {
                 let row = &mut rows.all[row as usize];
                 rolling.extend(row.roll);
-                if is_split {
-                    row.normal.impulse *= 0.5;
-                    row.slip.line.impulse *= 0.5;
+                if kick != span {
+                    row.normal.impulse *= kick / span;
+                    row.slip.line.impulse *= kick / span;
                 }
             }
             books.note_solve();
@@ -237,10 +263,16 @@ impl Stepper {
                 means,
             );
         }
-        self.set_off(&mut scene.bodies, island, (kick, span), is_split, books);
+        self.set_off(
+            &mut scene.bodies,
+            island,
+            (kick, span),
+            (!is_split).then_some(from.since_last()),
+            books,
+        );
         let (_, list) = self.islands.get(island);
         for &row in list {
-            remember(scene, &self.rows, row as usize, &self.smooth, kick);
+            remember(scene, &self.rows, row as usize, (&self.smooth, kick), &mut self.changes);
         }
         let Scene { bodies, laws, sleep, .. } = scene;
         let (members, list) = self.islands.get(island);
@@ -310,7 +342,7 @@ fn solve(
     let effort = match problem.list.len() {
         0..=LARGEST_SMALL if !is_loose => Some(Effort::Full),
         // Without forces to begin with.
-        0..=LARGEST_QUIET if from == From::Start => Some(Effort::Full),
+        0..=LARGEST_QUIET if from.is_start() => Some(Effort::Full),
         0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
         _ => None,
     };

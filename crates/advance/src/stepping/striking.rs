@@ -21,23 +21,23 @@ impl Stepper {
         island: usize,
         (books, report): (&mut StepBooks, &mut ImpactReport),
     ) -> bool {
-        if from == From::Before && !self.rows.strikes {
+        if !from.is_start() && !self.rows.strikes {
             return false;
         }
         let (members, list) = self.islands.get(island);
         let Some(slow) = self.slow_speed(list, (settings, span), from) else { return false };
         let bodies = &scene.bodies;
-        if from == From::Before {
+        if let From::Before(last) = from {
             // The half of a kick that ends here.
             for &body in members {
                 let course = &bodies.courses[body as usize];
                 let (before, node) = (course.smooth, self.node[body as usize]);
                 let mean: Motion3 = std::array::from_fn(|k| 0.5 * (before[k] + node[k]));
-                let pushed = course.pushed.map(|acceleration| 0.5 * span * acceleration);
-                books.book_body((bodies, body as usize), mean, pushed, 0.5 * span, false);
+                let pushed = course.pushed.map(|acceleration| 0.5 * last * acceleration);
+                books.book_body((bodies, body as usize), mean, pushed, 0.5 * last, false);
                 self.means[body as usize] = mean;
             }
-            self.book_laws(members, 0.5 * span, false, books);
+            self.book_laws(members, 0.5 * last, false, books);
         }
         let (members, list) = self.islands.get(island);
         let before = energy(bodies, members, &self.node);
@@ -153,8 +153,8 @@ impl Stepper {
             slow = slow.max(SLOW_STEPS * span * row.rate(&self.kicks.accelerations).abs());
             let closing = match (row.strikes, from) {
                 (Some(speed), _) => speed,
-                (None, From::Start) if row.is_bilateral => row.rate(&self.node).abs(),
-                (None, From::Start) if row.touches => -row.rate(&self.node),
+                (None, From::Start(_)) if row.is_bilateral => row.rate(&self.node).abs(),
+                (None, From::Start(_)) if row.touches => -row.rate(&self.node),
                 _ => 0.0,
             };
             fastest = fastest.max(closing);

@@ -6,15 +6,15 @@ use crate::rigid::{
 };
 use crate::stepping::bodies::Bodies;
 use crate::stepping::books::StepBooks;
+use crate::stepping::pacing::Pacing;
 use crate::stepping::pairs::Pairs;
-use crate::stepping::rows::Source;
+use crate::stepping::report;
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
 use crate::stepping::step::{From, Scene, Stepper};
 use crate::stepping::ties::Ties;
 use crate::system::EventDriven;
 use crate::time::Time;
-use glam::DVec2;
 use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorId, RailHint};
 use std::sync::Arc;
 
@@ -32,12 +32,13 @@ pub struct SteppingSystem {
     pub(super) scene: Scene,
     pub(super) stepper: Stepper,
     pub(super) books: StepBooks,
-    /// Start of the present step.
+    pacing: Pacing,
+    /// Start of the present step, and its length [s].
     pub(super) node: Time,
+    pub(super) span: f64,
     /// The last impact, and that of the present step, if there is one.
     impact: ImpactReport,
     fresh: ImpactReport,
-    changes: ContactChanges,
 }
 
 impl SteppingSystem {
@@ -52,7 +53,7 @@ impl SteppingSystem {
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;
         let count = bodies.len();
         let books = StepBooks::new(force_laws.len());
-        let bodies = Bodies::new(bodies, settings.step);
+        let bodies = Bodies::new(bodies);
         let laws = ForceLaws::new(force_laws, count, &Snapshot::new(start.seconds(), &bodies.movings));
         let sleep = Sleep::new(count);
         let scene = Scene {
@@ -67,43 +68,41 @@ impl SteppingSystem {
             scene,
             stepper: Stepper::default(),
             books,
+            pacing: Pacing::new(settings.step),
             node: start,
+            span: settings.step,
             impact: ImpactReport::default(),
             fresh: ImpactReport::default(),
-            changes: ContactChanges::default(),
         };
-        system.begin(From::Start);
+        system.begin(From::Start(0.0));
         Ok(system)
     }
 
-    /// Begins the step at the present node; tells of an impact there.
+    /// Begins the step at the present node; tells of impacts there, and of contacts that begin or end.
     pub(super) fn begin(&mut self, from: From) -> Option<Handled> {
         let time = self.node.seconds();
+        if let Some(accuracy) = self.settings.accuracy {
+            let parts = (&mut self.scene, &mut self.stepper, &mut self.books);
+            self.span = self.pacing.choose(parts, (&self.settings, accuracy), time, from);
+        }
         let hits = self.books.counts().impacts;
         self.fresh.begin(self.node);
         self.stepper.begin(
             &mut self.scene,
-            (&self.settings, time, self.settings.step),
+            (&self.settings, time, self.span),
             from,
             (&mut self.books, &mut self.fresh),
         );
         if self.books.counts().impacts > hits {
             std::mem::swap(&mut self.impact, &mut self.fresh);
         }
-        let handled = Handled { time: self.node, impact: true };
-        (self.books.counts().impacts > hits).then_some(handled)
+        let handled = Handled { time: self.node, impact: self.books.counts().impacts > hits };
+        (handled.impact || !self.stepper.changes.is_empty()).then_some(handled)
     }
 
     /// Brings all bodies to a time of the present step.
     pub(super) fn go_to(&mut self, time: Time) {
-        let (since, span) = (time.since(self.node), self.settings.step);
-        for place in 0..self.scene.bodies.count() {
-            let state = self.scene.bodies.courses[place].state_at(since, span);
-            self.scene.bodies.place(place, &state);
-            let course = &self.scene.bodies.courses[place];
-            let way = course.middle.map(|velocity| velocity * (1.0 - course.delay) * since);
-            self.scene.bodies.note_way(place, way);
-        }
+        self.scene.bodies.go_to(time.since(self.node), self.span);
         self.node = time;
     }
 
@@ -131,7 +130,7 @@ impl SteppingSystem {
     #[must_use]
     #[inline]
     pub fn state_at(&self, body: BodyId, time: Time) -> BodyState {
-        self.scene.bodies.courses[body.index()].state_at(time.since(self.node), self.settings.step)
+        self.scene.bodies.courses[body.index()].state_at(time.since(self.node), self.span)
     }
 
     /// Start of the present step.
@@ -186,38 +185,15 @@ impl SteppingSystem {
         ROOM * reach[0].min(reach[1])
     }
 
-    /// Forces of all rows that carry one in the present step.
+    /// Forces of all rows that carry one in the present step, and then those between bodies that sleep.
     #[must_use]
     pub fn row_forces(&self) -> Vec<RowForce> {
-        let (rows, count) = (self.stepper.rows.all.iter(), self.body_count());
-        rows.filter_map(|row| {
-            let (connector, features, force) = match row.source {
-                Source::Contact { pair, contact } => {
-                    let contact = &self.scene.pairs.all()[pair as usize].contacts[contact as usize];
-                    (None, Some(contact.features), contact.forces[0])
-                }
-                Source::Connector { connector, direction } => {
-                    let force = self.scene.ties.memory[connector as usize].forces[direction as usize];
-                    (Some(ConnectorId(connector)), None, force)
-                }
-            };
-            let [x, y, ..] = row.normal.jacobian();
-            (force != 0.0).then(|| RowForce {
-                bodies: row.bodies(count),
-                connector,
-                features,
-                point: row.point,
-                normal: DVec2::new(x, y),
-                force,
-                bouncing: None,
-            })
-        })
-        .collect()
+        report::row_forces(&self.scene, &self.stepper.rows)
     }
 
     /// Writes the energy ledger at a time of the present step over `ledger`, whose buffer is used again.
     pub fn write_ledger(&self, time: Time, ledger: &mut Ledger) {
-        self.books.write(time.since(self.node) - 0.5 * self.settings.step, ledger);
+        self.books.write(time.since(self.node) - 0.5 * self.span, ledger);
     }
 
     /// Report of the last impact; empty if there was none.
@@ -231,7 +207,7 @@ impl SteppingSystem {
     #[must_use]
     #[inline]
     pub fn contact_changes(&self) -> &ContactChanges {
-        &self.changes
+        &self.stepper.changes
     }
 
     /// Force laws, in the order of their indices, those that were removed included.
@@ -258,13 +234,14 @@ impl EventDriven for SteppingSystem {
     type Error = AdvanceError;
 
     fn next_event(&self) -> Option<Time> {
-        Some(self.node.plus(REACHED * self.settings.step))
+        Some(self.node.plus(REACHED * self.span))
     }
 
     /// Begins the next step.
     fn handle_next(&mut self) -> Result<Option<Handled>, AdvanceError> {
         self.books.begin(0.0);
-        self.go_to(self.node.plus(self.settings.step));
-        Ok(self.begin(From::Before))
+        let last = self.span;
+        self.go_to(self.node.plus(last));
+        Ok(self.begin(From::Before(last)))
     }
 }

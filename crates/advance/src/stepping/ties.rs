@@ -11,6 +11,8 @@ pub(super) struct Tie {
     pub(super) forces: [f64; 2],
     /// It carried a force in the last step.
     pub(super) presses: bool,
+    /// Callers know that it carries a force.
+    pub(super) is_told: bool,
     /// Speed [m/s] at which a rope goes taut at the end of the step, or a stop is met, if that is an impact.
     pub(super) arrival: Option<f64>,
     /// Place of the point of a rail or a stop.

@@ -14,7 +14,7 @@ fn strategy(run: &RunData) -> AdvanceBy {
     match run.strategy {
         StrategyData::Events => AdvanceBy::Events,
         StrategyData::Steps => AdvanceBy::Steps {
-            step: run.time_step.unwrap_or(DEFAULT_STEP),
+            step: run.time_step.or(run.tolerance.is_none().then_some(DEFAULT_STEP)),
             residual: run.tolerance.unwrap_or(DEFAULT_RESIDUAL),
         },
     }

@@ -19,10 +19,6 @@ fn check_run(run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
     if run.strategy == StrategyData::Events {
         return Ok(());
     }
-    if run.time_step.is_none() && run.tolerance.is_some() {
-        let message = "steps of a length chosen by the tolerance are not supported yet: give a `time_step`";
-        return Err(SceneError::new(at.field("tolerance"), message.to_owned()));
-    }
     if !run.contacts {
         let message =
             "steps know no contacts without forces: leave `contacts` out, or set `strategy` to `events`";

@@ -3,7 +3,7 @@
 use crate::rigid::group::state::Work;
 
 /// Changes of energy [J] since the start by cause, each negative where energy was lost.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ledger {
     /// Impacts with elasticity.
@@ -20,6 +20,19 @@ pub struct Ledger {
     pub damping: f64,
     /// Work of each force law that has no potential, in the order of [`RigidSystem::laws`]; 0 for the others.
     pub force_laws: Vec<f64>,
+}
+
+impl Clone for Ledger {
+    fn clone(&self) -> Self {
+        Self { force_laws: self.force_laws.clone(), ..*self }
+    }
+
+    /// Uses the buffer again.
+    fn clone_from(&mut self, source: &Self) {
+        let mut force_laws = std::mem::take(&mut self.force_laws);
+        force_laws.clone_from(&source.force_laws);
+        *self = Self { force_laws, ..*source };
+    }
 }
 
 impl Ledger {
