@@ -85,6 +85,13 @@ pub enum Shape {
         /// Size along y [m].
         height: f64,
     },
+    /// All points within a radius of a convex polygon.
+    Rounded {
+        /// Corners of the polygon, counter-clockwise [m].
+        corners: Vec<DVec2>,
+        /// The radius [m].
+        radius: f64,
+    },
     /// The solid that closed paths of lines and arcs surround; only discs may collide with it.
     Outline(Vec<PathSpec>),
 }
@@ -181,7 +188,7 @@ impl Scene {
         let has_arcs = |path: &PathSpec| path.edges.iter().any(is_arc);
         self.bodies.iter().any(|body| match &body.shape {
             Shape::Outline(paths) => paths.iter().any(has_arcs),
-            Shape::Disc { .. } | Shape::Block { .. } => false,
+            Shape::Disc { .. } | Shape::Block { .. } | Shape::Rounded { .. } => false,
         })
     }
 
@@ -262,6 +269,21 @@ impl Body {
         Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
     }
 
+    /// A convex polygon about its centroid, grown by a radius [m], of uniform density [kg/m^2].
+    ///
+    /// # Panics
+    /// If the corners make no polygon.
+    #[must_use]
+    pub fn rounded(name: &str, corners: &[DVec2], radius: f64, density: f64, start: BodyState) -> Self {
+        let shape = halfgap::geometry::Shape::from_paths(&[rounded(corners, radius)]).expect("a polygon");
+        let of_shape = shape.mass_properties();
+        let mass = density * of_shape.area;
+        let inertia = Inertia { mass, moment: mass * of_shape.moment_per_mass };
+        let shape = Shape::Rounded { corners: corners.to_vec(), radius };
+        let name = name.to_owned();
+        Self { name, shape, inertia: Some(inertia), start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
+    }
+
     /// The body with friction.
     #[must_use]
     pub fn with_friction(self, friction: f64) -> Self {
@@ -273,6 +295,22 @@ impl Body {
     pub fn with_elasticity(self, elasticity: f64) -> Self {
         Self { elasticity, ..self }
     }
+}
+
+/// Outline of all points within a radius [m] of a convex polygon.
+#[must_use]
+pub fn rounded(corners: &[DVec2], radius: f64) -> PathSpec {
+    let count = corners.len();
+    let out = |index: usize| {
+        let along = corners[(index + 1) % count] - corners[index % count];
+        -radius * along.normalize().perp()
+    };
+    let edges = (0..count).flat_map(|index| {
+        let (center, out) = (corners[(index + 1) % count], [out(index), out(index + 1)]);
+        let arc = EdgeSpec::Arc { to: center + out[1], center, clockwise: false };
+        [EdgeSpec::Line { to: center + out[0] }, arc]
+    });
+    PathSpec { start: corners[0] + out(0), edges: edges.collect() }
 }
 
 impl End {

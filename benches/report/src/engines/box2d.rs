@@ -163,6 +163,11 @@ impl Running {
                 let polygon = shapes::box_polygon(half(width), half(height)).map_err(told)?;
                 target.create_polygon(&definition, &polygon).map_err(told)?;
             }
+            Shape::Rounded { corners, radius } => {
+                let corners = corners.iter().map(|&corner| vector(corner * scale));
+                let radius = (radius * scale) as f32;
+                target.create_polygon_from_points(&definition, corners, radius).map_err(told)?;
+            }
             Shape::Outline(paths) => {
                 for corners in corners(paths, segments)? {
                     let points = corners.iter().map(|&corner| vector(corner * scale));

@@ -1,7 +1,7 @@
 //! halfgap, with its one knob.
 
 use super::{Engine, EngineError, Session};
-use crate::scene::{Body, Connector, End, Scene, Shape};
+use crate::scene::{Body, Connector, End, Scene, Shape, rounded};
 use glam::DVec2;
 use halfgap::{
     AdvanceBy, Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath,
@@ -83,6 +83,7 @@ fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
     let shape = match &body.shape {
         Shape::Disc { radius } => geometry::Shape::disc(*radius)?,
         Shape::Block { width, height } => geometry::Shape::block(*width, *height)?,
+        Shape::Rounded { corners, radius } => geometry::Shape::from_paths(&[rounded(corners, *radius)])?,
         Shape::Outline(paths) => geometry::Shape::from_paths(paths)?,
     };
     let inertia = body.inertia.map(|inertia| Inertia { mass: inertia.mass, moment: inertia.moment });

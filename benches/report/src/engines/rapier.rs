@@ -278,6 +278,11 @@ fn colliders(shape: &Shape, segments: usize) -> Result<Vec<ColliderBuilder>, Eng
     Ok(match shape {
         Shape::Disc { radius } => vec![ColliderBuilder::ball(*radius)],
         Shape::Block { width, height } => vec![ColliderBuilder::cuboid(0.5 * width, 0.5 * height)],
+        Shape::Rounded { corners, radius } => {
+            let corners = corners.iter().map(|&corner| vector(corner)).collect();
+            let rounded = ColliderBuilder::round_convex_polyline(corners, *radius);
+            vec![rounded.ok_or_else(|| EngineError::Build("a polygon that is not convex".to_owned()))?]
+        }
         Shape::Outline(paths) => {
             let paths = corners(paths, segments).map_err(EngineError::Build)?;
             paths.iter().map(|corners| polyline(corners)).collect()

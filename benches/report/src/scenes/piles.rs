@@ -4,6 +4,8 @@ use super::exact;
 use crate::scene::{Body, Scene, Shape};
 use glam::DVec2;
 use halfgap::BodyState;
+use halfgap::geometry::PathSpec;
+use std::f64::consts::TAU;
 
 const GRAVITY: f64 = 9.81;
 
@@ -50,13 +52,14 @@ type Maker = (&'static str, fn() -> Scene);
 const FRAMES: f64 = 60.0;
 const FRICTION: f64 = 0.5;
 
-const ROUGH: [Maker; 8] = [
+const ROUGH: [Maker; 9] = [
     ("pile_200", || exact::read_pile("pile_200", 1.0 / FRAMES)),
     ("pyramid_20", || pyramid(20)),
     ("pyramid_50", || pyramid(50)),
     ("tower_100", tower),
     ("wall_1000", wall),
     ("hopper_2000", hopper),
+    ("drum_500", drum),
     ("heaps_1000", || heaps(1000)),
     ("heaps_10000", || heaps(10_000)),
 ];
@@ -145,6 +148,30 @@ fn hopper() -> Scene {
         ));
     }
     rough_pile("hopper_2000", "2,000 discs run through the outlet of a hopper", bodies, 5.0)
+}
+
+/// Rounded polygons of three to six corners in a drum of 40 sides that turns by half a radian a second.
+fn drum() -> Scene {
+    let (inside, outside, sides) = (6.0, 7.0, 40);
+    let ring = |radius: f64| -> Vec<DVec2> {
+        let corner = |side: u32| radius * DVec2::from_angle(f64::from(side) * TAU / f64::from(sides));
+        (0..sides).map(corner).collect()
+    };
+    let paths = [outside, inside].map(|radius| PathSpec::polygon(&ring(radius)));
+    let mut bodies = vec![Body::fixed("drum", Shape::Outline(paths.to_vec()), DVec2::ZERO)];
+    bodies[0].spin = 0.5;
+    let (pitch, room) = (0.42, inside - 0.4);
+    let places = (0..29_i32).flat_map(|row| (0..29_i32).map(move |column| (column - 14, row - 14)));
+    let places = places.map(|(column, row)| DVec2::new(pitch * f64::from(column), pitch * f64::from(row)));
+    for (index, place) in places.filter(|place| place.length() < room).take(500).enumerate() {
+        let (corners, round) = (3 + index as u32 % 4, 0.03);
+        let size = 0.12 + 0.01 * f64::from(index as u32 * 7 % 5);
+        let corner = |side: u32| size * DVec2::from_angle(f64::from(side) * TAU / f64::from(corners));
+        let corners: Vec<DVec2> = (0..corners).map(corner).collect();
+        let start = BodyState { angle: 0.7 * index as f64, ..at(place.x, place.y) };
+        bodies.push(Body::rounded(&format!("stone {index}"), &corners, round, 100.0, start));
+    }
+    rough_pile("drum_500", "500 rounded polygons in a drum that turns", bodies, 5.0)
 }
 
 /// Discs that fall into boxes of 100 each, so that heaps of any number have one depth.
