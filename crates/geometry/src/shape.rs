@@ -133,6 +133,17 @@ impl Shape {
         self.parts.reach
     }
 
+    /// True if the segment between any two points of the shape lies in it.
+    #[must_use]
+    pub fn is_convex(&self) -> bool {
+        let [path] = self.paths() else { return false };
+        let next = path.edges().iter().cycle().skip(1);
+        path.edges()
+            .iter()
+            .zip(next)
+            .all(|(before, after)| before.curvature() >= 0.0 && corner_turn(before, after) >= -SMOOTH_CORNER)
+    }
+
     /// Signed distance [m] from the body's origin, along a unit vector [body coordinates], of the shape's farthest
     /// point along it (the support function); negative if the whole shape lies behind the origin.
     #[must_use]

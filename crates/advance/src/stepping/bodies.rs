@@ -19,6 +19,7 @@ pub(super) struct Nature {
     pub(super) surface: Surface,
     /// Largest distance [m] of a point from the centre of mass.
     pub(super) reach: f64,
+    pub(super) is_convex: bool,
     /// Least width [m], about: of a plate that of a block of the same area and length.
     pub(super) thickness: f64,
 }
@@ -132,7 +133,8 @@ impl Bodies {
         let natures = parts.into_iter().map(|BodyPart { body, free_motion, surface, .. }| {
             let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
             let (reach, area) = (body.shape.reach(), body.shape.mass_properties().area);
-            Nature { reach, thickness: 0.5 * area / reach, body, free_motion, surface }
+            let is_convex = body.shape.is_convex();
+            Nature { reach, is_convex, thickness: 0.5 * area / reach, body, free_motion, surface }
         });
         let natures: Vec<Nature> = natures.collect();
         let least_thickness = natures.iter().map(|nature| nature.thickness).fold(f64::INFINITY, f64::min);

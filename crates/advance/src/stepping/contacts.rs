@@ -68,6 +68,13 @@ pub(super) struct Found {
     pub(super) sample: GapSample,
 }
 
+impl Found {
+    /// The unit normal from the second body of the pair to the first.
+    pub(super) fn normal(&self) -> DVec2 {
+        if self.sample.primary_is_a { self.sample.normal } else { -self.sample.normal }
+    }
+}
+
 /// Directions of normals that differ by less than this sine belong to one place.
 const ONE_PLACE: f64 = 0.1;
 
@@ -165,13 +172,11 @@ fn drop_doubles(found: &mut Vec<Found>, nearness: &Nearness) {
     let middle = |sample: &GapSample| 0.5 * (sample.point_primary + sample.point_normal);
     let mut kept = 0;
     for next in 0..found.len() {
-        let Found { sample, .. } = found[next];
-        // From b to a, whichever is the primary side.
-        let normal = |sample: &GapSample| if sample.primary_is_a { sample.normal } else { -sample.normal };
+        let (normal, sample) = (found[next].normal(), found[next].sample);
         let double = (0..kept).find(|&other| {
+            let (p, q) = (normal, found[other].normal());
             let other = &found[other].sample;
             let near = sample.gap.abs().max(other.gap.abs()) + nearness.overrun;
-            let (p, q) = (normal(&sample), normal(other));
             p.dot(q) > 0.0
                 && p.perp_dot(q).abs() < ONE_PLACE
                 && (middle(&sample) - middle(other)).length() <= near

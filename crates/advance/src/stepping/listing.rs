@@ -3,6 +3,7 @@
 use crate::rigid::{PairSurface, RowForce};
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure, measure_contacts};
+use crate::stepping::facing::side;
 use crate::stepping::pairs::{Pair, Pairs};
 use crate::stepping::passing::FAST;
 use crate::stepping::rows::{Line, Roll, Row, Rows, Slip, Source};
@@ -191,8 +192,12 @@ impl Listing {
             self.ended.extend(measure(sides, old.features).map(told));
         }
         pair.deepest = self.found.iter().map(|found| -found.sample.gap).fold(0.0, f64::max);
+        let can_face =
+            pair.deepest > lengths.slack && places.iter().all(|&place| bodies.natures[place].is_convex);
+        let side = if can_face { side(sides, &self.found) } else { None };
         for (contact, found) in self.found.iter().enumerate() {
-            pair.contacts[contact].is_listed = found.sample.gap <= way + lengths.target_gap;
+            pair.contacts[contact].is_listed = found.sample.gap <= way + lengths.target_gap
+                && side.is_none_or(|side| found.normal().dot(side) > 0.0);
             if pair.contacts[contact].is_listed {
                 add_contact(bodies, pair, (index, contact), &found.sample, lengths, rows);
             } else {
