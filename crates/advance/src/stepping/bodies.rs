@@ -174,6 +174,22 @@ impl Bodies {
         self.natures.len()
     }
 
+    /// Bound on the way [m] that points of two bodies, where these are near each other, go past each other in a time `span` [s] at given
+    /// velocities: less than the sum of their ways where they are carried along together, as by a drum that turns.
+    pub(super) fn way_past(&self, [a, b]: [usize; 2], velocities: [Motion3; 2], span: f64) -> f64 {
+        let reaches = [a, b].map(|place| self.natures[place].reach);
+        let (own, other) = if reaches[0] <= reaches[1] { (0, 1) } else { (1, 0) };
+        let places = [a, b].map(|place| self.courses[place].position);
+        let motion = velocities.map(|[x, y, _]| DVec2::new(x, y));
+        let turns = velocities.map(|[.., turn]| turn);
+        let past = motion[own] - motion[other];
+        // As seen from the larger body, which turns a little on the way.
+        let seen = past - turns[other] * (places[own] - places[other]).perp();
+        let turned =
+            turns[other].abs() * span * past.length() + (turns[own] - turns[other]).abs() * reaches[own];
+        span * (seen.length() + turned)
+    }
+
     /// Thickness of the thinner of two bodies [m].
     #[inline]
     pub(super) fn thinner(&self, [a, b]: [usize; 2]) -> f64 {

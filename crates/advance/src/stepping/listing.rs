@@ -51,6 +51,8 @@ pub(super) struct Lengths {
     pub(super) span: f64,
     /// Time since the start of the step before [s].
     pub(super) since_last: f64,
+    /// Speed that forces give in the step [m/s].
+    pub(super) fall: f64,
     /// Gap at which bodies touch [m].
     pub(super) target_gap: f64,
     /// Error of positions that does not matter [m].
@@ -123,7 +125,7 @@ impl Listing {
                 }
             }
             self.listed[index] = true;
-            self.list_pair(bodies, &mut pairs.all_mut()[index], index, lengths, rows);
+            self.list_pair(bodies, (&mut pairs.all_mut()[index], index), free, lengths, rows);
         }
         has_woken
     }
@@ -165,13 +167,15 @@ impl Listing {
     fn list_pair(
         &mut self,
         bodies: &Bodies,
-        pair: &mut Pair,
-        index: usize,
+        (pair, index): (&mut Pair, usize),
+        free: &[Motion3],
         lengths: Lengths,
         rows: &mut Rows,
     ) {
         let places = pair.bodies.map(BodyId::index);
-        let way = self.ways[places[0]] + self.ways[places[1]];
+        // What contacts make of velocities is in the order of what forces do.
+        let past = bodies.way_past(places, places.map(|place| free[place]), lengths.span);
+        let way = (self.ways[places[0]] + self.ways[places[1]]).min(past + 2.0 * lengths.span * lengths.fall);
         let gone = bodies.ways[places[0]] + bodies.ways[places[1]];
         let sides = places.map(|place| (&bodies.natures[place].body.shape, &bodies.movings[place]));
         let is_known = gone + way <= pair.known_until
@@ -231,7 +235,7 @@ fn add_contact(
     let [primary, normal] = ids.map(|body| &bodies.movings[body.index()]);
     let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
     let kinematics = GapKinematics::of(sample, primary, normal);
-    let Lengths { span, since_last, target_gap, slack } = lengths;
+    let Lengths { span, since_last, target_gap, slack, .. } = lengths;
     let gap = sample.gap - target_gap;
     // What turns far within a step is on no parabola.
     let turn = kinematics

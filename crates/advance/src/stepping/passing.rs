@@ -127,7 +127,9 @@ impl Passing {
     ) {
         let places = pair.bodies.map(BodyId::index);
         let is_still = |place: usize| self.stops[place] <= from || self.ways[place] == 0.0;
-        let way: f64 = places.iter().filter(|&&place| !is_still(place)).map(|&place| self.ways[place]).sum();
+        let velocities =
+            places.map(|place| if is_still(place) { [0.0; 3] } else { bodies.courses[place].middle });
+        let way = bodies.way_past(places, velocities, span).min(self.ways[places[0]] + self.ways[places[1]]);
         let slow = FAST * bodies.thinner(places);
         if way <= slow {
             return;

@@ -137,10 +137,17 @@ impl Stepper {
         (books, report): (&mut StepBooks, &mut ImpactReport),
     ) {
         self.kicks.find(&scene.bodies, &scene.laws, time);
+        self.fall = span * self.kicks.fastest();
         scene.bodies.set_kick(if from.is_start() { span } else { from.kick(span) });
         self.find_free(&scene.bodies, span, from);
         let target_gap = settings.rigid.tolerances.target_gap;
-        let lengths = Lengths { span, since_last: from.since_last(), target_gap, slack: settings.slack };
+        let lengths = Lengths {
+            span,
+            since_last: from.since_last(),
+            fall: self.fall,
+            target_gap,
+            slack: settings.slack,
+        };
         let Scene { bodies, pairs, ties, sleep, .. } = scene;
         let pairs = settings.rigid.collisions.then_some(pairs);
         self.listing.list(bodies, (pairs, ties, sleep), &self.free, lengths, &mut self.rows);
@@ -154,7 +161,6 @@ impl Stepper {
         }
         books.note_gaps(&self.rows, target_gap);
         self.islands.find(bodies, |place| !sleep.is_asleep(place), &self.rows.all);
-        self.fall = span * self.kicks.fastest();
         self.residual = settings.residual * self.fall;
         for island in 0..self.islands.count() {
             self.advance_island(scene, (settings, span), from, island, (books, report));
