@@ -24,6 +24,7 @@ fn engines() -> Vec<Box<dyn Engine>> {
         }),
         halfgap(60.0, 0.3),
         halfgap(60.0, 1e-1),
+        halfgap(60.0, 3e-2),
         halfgap(60.0, 1e-2),
         halfgap(120.0, 1e-2),
         halfgap(240.0, 1e-2),

@@ -6,7 +6,7 @@ use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure, me
 use crate::stepping::facing::side;
 use crate::stepping::pairs::{Pair, Pairs};
 use crate::stepping::passing::FAST;
-use crate::stepping::rows::{Line, Roll, Row, Rows, Slip, Source};
+use crate::stepping::rows::{Lengths, Line, Roll, Row, Rows, Slip, Source};
 use crate::stepping::sleep::Sleep;
 use crate::stepping::ties::Ties;
 use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned, visit_near_features};
@@ -44,21 +44,6 @@ pub(super) struct Listing {
     listed: Vec<bool>,
 }
 
-/// Lengths of a step that decide what is near.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lengths {
-    /// Length of the step [s].
-    pub(super) span: f64,
-    /// Time since the start of the step before [s].
-    pub(super) since_last: f64,
-    /// Speed that forces give in the step [m/s].
-    pub(super) fall: f64,
-    /// Gap at which bodies touch [m].
-    pub(super) target_gap: f64,
-    /// Error of positions that does not matter [m].
-    pub(super) slack: f64,
-}
-
 impl Listing {
     /// Lists the rows of a step in `rows`. Bodies set out with velocities `free`, those without contacts in the step.
     pub(super) fn list(
@@ -73,7 +58,7 @@ impl Listing {
         self.ended.clear();
         ties.follow(bodies);
         let Some(pairs) = pairs else {
-            list_ties(bodies, ties, sleep, lengths, rows);
+            ties.list(bodies, |place| sleep.is_asleep(place), lengths, rows);
             return;
         };
         self.ways.clear();
@@ -91,7 +76,7 @@ impl Listing {
         self.listed.resize(pairs.all().len(), false);
         // What is woken has pairs that were passed over.
         while self.list_contacts(bodies, (pairs, ties, sleep), free, lengths, rows) {}
-        list_ties(bodies, ties, sleep, lengths, rows);
+        ties.list(bodies, |place| sleep.is_asleep(place), lengths, rows);
     }
 
     /// Lists the contacts of bodies that are awake and have not been listed. True if bodies were woken.
@@ -316,42 +301,4 @@ fn rolling_bound(surface: &PairSurface, radii: [Option<f64>; 2]) -> Option<f64> 
     }
     let curvature: f64 = radii.iter().flatten().map(|&radius| 1.0 / radius).sum();
     (curvature != 0.0).then(|| surface.rolling / curvature.abs())
-}
-
-fn list_ties(bodies: &Bodies, ties: &Ties, sleep: &Sleep, lengths: Lengths, rows: &mut Rows) {
-    let Lengths { span, slack, .. } = lengths;
-    for (index, connector) in ties.all.iter().enumerate() {
-        let tie = &ties.memory[index];
-        let ids = connector.bodies();
-        // Bodies that are tied sleep together.
-        if ids.iter().all(|&body| bodies.is_fixed(body) || sleep.is_asleep(body.index())) {
-            continue;
-        }
-        let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
-        let is_bilateral = connector.is_bilateral();
-        for direction in 0..connector.row_count() {
-            let sample = ties.measure(bodies, index, direction);
-            let gap = if is_bilateral { sample.gap } else { sample.gap.max(0.0) };
-            let offset = gap / span + 0.5 * span * sample.kinematics.gamma;
-            let mut row = Row {
-                places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
-                is_bilateral,
-                presses: tie.presses,
-                touches: is_bilateral || tie.presses || sample.gap <= slack,
-                roll: None,
-                normal: Line::new(sample.kinematics.jacobian, inertia, offset),
-                slip: Slip::default(),
-                gap: sample.gap,
-                gamma: sample.kinematics.gamma,
-                elasticity: connector.elasticity,
-                strikes: tie.arrival,
-                blows: [0.0; 2],
-                arrives: None,
-                point: sample.point_a,
-                source: Source::Connector { connector: index as u32, direction: direction as u32 },
-            };
-            row.normal.impulse = span * tie.forces[direction];
-            rows.push(row);
-        }
-    }
 }

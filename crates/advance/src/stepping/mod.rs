@@ -5,7 +5,7 @@
 //!
 //! `settings` · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
 //! remembered of where they touch · `facing`: on which side · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `listing`: what contacts
-//! and connectors ask of velocities · `islands` · `exact`, `sweeps`, `swept`: impulses · `impacts` · `report`: what callers are told ·
+//! and connectors ask of velocities · `islands` · `solving`, `exact`, `sweeps`, `swept`: impulses · `impacts` · `report`: what callers are told ·
 //! `pacing`: how long steps are · `projection`: back to the gaps · `passing`: what would pass through something · `sleep` · `memory` · `striking`, `departure`, `step`:
 //! from one step to the next · `books` · `system`, `intervention`: what callers see and change.
 
@@ -29,6 +29,7 @@ mod report;
 mod rows;
 mod settings;
 mod sleep;
+mod solving;
 mod step;
 mod striking;
 mod sweeps;

@@ -158,6 +158,21 @@ pub(super) struct Roll {
     pub(super) bound: f64,
 }
 
+/// Lengths of a step that decide what is near.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths {
+    /// Length of the step [s].
+    pub(super) span: f64,
+    /// Time since the start of the step before [s].
+    pub(super) since_last: f64,
+    /// Speed that forces give in the step [m/s].
+    pub(super) fall: f64,
+    /// Gap at which bodies touch [m].
+    pub(super) target_gap: f64,
+    /// Error of positions that does not matter [m].
+    pub(super) slack: f64,
+}
+
 /// A contact, or a direction of a connector.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]

@@ -17,32 +17,28 @@
 use crate::rigid::{ContactChanges, ForceLaws, ImpactReport};
 use crate::stepping::bodies::{Bodies, Course, Motion3, farthest};
 use crate::stepping::books::StepBooks;
-use crate::stepping::exact::{Effort, Exact};
+use crate::stepping::exact::Exact;
 use crate::stepping::impacts::Impacts;
 use crate::stepping::islands::Islands;
 use crate::stepping::kicks::{Kicks, kicked};
-use crate::stepping::listing::{Lengths, Listing};
+use crate::stepping::listing::Listing;
 use crate::stepping::memory::remember;
 use crate::stepping::pairs::Pairs;
 use crate::stepping::passing::Passing;
 use crate::stepping::projection::Shifts;
-use crate::stepping::rows::{Balance, Line, Mover, Rows};
+use crate::stepping::rows::{Lengths, Line, Mover, Rows};
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
-use crate::stepping::sweeps::{Enough, Problem, Sweeps};
+use crate::stepping::solving::{Means, solve};
+use crate::stepping::sweeps::{Enough, Sweeps};
 use crate::stepping::ties::Ties;
 use crate::time::Time;
 
-/// Number of rows up to which an island is solved exactly, by whatever it takes.
-pub(super) const LARGEST_SMALL: usize = 60;
 /// Residual beyond which what moves is left to sweeps [-].
 const LOOSE: f64 = 1e-3;
 /// Speed up to which an island is quiet there, as a fraction of that which forces make in a step [-]. With 1 a pile of 200 discs in which one
 /// rolls on for ever is solved exactly in each step, which takes half of its time.
 const CALM: f64 = 0.1;
-/// Number of rows up to which an island in which nothing is faster than forces make it in a step is solved exactly, if the forces of the
-/// last step tell its modes: a tower stands, where sweeps would let each of its contacts close a little.
-const LARGEST_QUIET: usize = 1000;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 pub(super) const SLOW_STEPS: f64 = 2.0;
 
@@ -228,7 +224,8 @@ impl Stepper {
             farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= quiet
         });
         let enough = Enough::new(settings.residual, self.fall);
-        let means = Means { from, is_quiet, is_loose, span, slack: settings.slack, enough };
+        let means =
+            Means { is_start: from.is_start(), is_quiet, is_loose, span, slack: settings.slack, enough };
         if !list.is_empty() {
             let Self { rows, rolling, .. } = self;
             rolling.clear();
@@ -303,62 +300,5 @@ impl Stepper {
             }
         }
         any
-    }
-}
-
-/// What decides how the problem of an island is solved.
-#[derive(Clone, Copy, Debug)]
-struct Means {
-    from: From,
-    /// Nothing is faster than forces make it in a step.
-    is_quiet: bool,
-    span: f64,
-    slack: f64,
-    enough: Enough,
-    /// What moves is left to sweeps.
-    is_loose: bool,
-}
-
-/// True if the impulses of a solution give bodies more energy than they may.
-fn explodes(problem: &Problem<'_>, members: &[u32], free: &[Motion3]) -> bool {
-    let Problem { rows, list, movers, before, .. } = problem;
-    let mut balance = Balance::default();
-    for &row in list.iter() {
-        let row = &rows[row as usize];
-        let [p, q] = row.ends().map(|place| &movers[place].velocity);
-        let closing = row.rate(before) + row.normal.rate(p, q);
-        let slipping = row.slip_rate(before) + row.slip.line.rate(p, q);
-        row.weigh([row.normal.impulse, row.slip.line.impulse], [closing, slipping], &mut balance);
-    }
-    let energy = |velocities: &[Motion3]| -> f64 {
-        members.iter().map(|&body| movers[body as usize].energy(velocities[body as usize])).sum()
-    };
-    balance.explodes(energy(before) + energy(free))
-}
-
-/// Finds the impulses of some rows of an island and of some that resist rolling, beginning with those that they have, for velocities without them.
-fn solve(
-    (rows, list, rolling): (&mut Rows, &[u32], &[u32]),
-    (movers, before, free): (&mut [Mover], &[Motion3], &[Motion3]),
-    (exact, sweeps): (&mut Exact, &mut Sweeps),
-    members: &[u32],
-    Means { from, is_quiet, span, slack, enough, is_loose }: Means,
-) {
-    let mut problem = Problem { rows: &mut rows.all, list, rolls: &mut rows.rolls, rolling, movers, before };
-    let effort = match problem.list.len() {
-        0..=LARGEST_SMALL if !is_loose => Some(Effort::Full),
-        // Without forces to begin with.
-        0..=LARGEST_QUIET if from.is_start() => Some(Effort::Full),
-        0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
-        _ => None,
-    };
-    let mut is_solved =
-        effort.is_some_and(|effort| exact.solve(&mut problem, members, (span, slack), effort));
-    if is_solved && explodes(&problem, members, free) {
-        problem.forget(members, free);
-        is_solved = false;
-    }
-    if !is_solved {
-        sweeps.solve(&mut problem, members, enough);
     }
 }

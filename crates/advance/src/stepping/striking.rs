@@ -7,7 +7,8 @@ use crate::stepping::kicks::kicked;
 use crate::stepping::report;
 use crate::stepping::rows::Balance;
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::step::{From, LARGEST_SMALL, SLOW_STEPS, Scene, Stepper};
+use crate::stepping::solving::LARGEST_SMALL;
+use crate::stepping::step::{From, SLOW_STEPS, Scene, Stepper};
 use crate::stepping::sweeps::{Enough, Problem};
 use halfgap_collision::BodyId;
 

@@ -1,6 +1,7 @@
-//! Connectors, and what is remembered of them from one step to the next.
+//! Connectors: what is remembered of them from one step to the next, and their rows.
 
 use crate::stepping::bodies::Bodies;
+use crate::stepping::rows::{Lengths, Line, Row, Rows, Slip, Source};
 use halfgap_collision::{Connector, ConnectorKind, ConnectorSample, RailHint};
 
 /// What is remembered of a connector.
@@ -49,5 +50,50 @@ impl Ties {
         let connector = &self.all[index];
         let [a, b] = connector.bodies().map(|body| bodies.moving(body));
         connector.measure_near(direction, &a, &b, self.memory[index].hint.as_ref())
+    }
+
+    /// Lists the rows of the connectors of bodies that are awake.
+    pub(super) fn list(
+        &self,
+        bodies: &Bodies,
+        is_asleep: impl Fn(usize) -> bool,
+        lengths: Lengths,
+        rows: &mut Rows,
+    ) {
+        let Lengths { span, slack, .. } = lengths;
+        for (index, connector) in self.all.iter().enumerate() {
+            let tie = &self.memory[index];
+            let ids = connector.bodies();
+            // Bodies that are tied sleep together.
+            if ids.iter().all(|&body| bodies.is_fixed(body) || is_asleep(body.index())) {
+                continue;
+            }
+            let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
+            let is_bilateral = connector.is_bilateral();
+            for direction in 0..connector.row_count() {
+                let sample = self.measure(bodies, index, direction);
+                let gap = if is_bilateral { sample.gap } else { sample.gap.max(0.0) };
+                let offset = gap / span + 0.5 * span * sample.kinematics.gamma;
+                let mut row = Row {
+                    places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
+                    is_bilateral,
+                    presses: tie.presses,
+                    touches: is_bilateral || tie.presses || sample.gap <= slack,
+                    roll: None,
+                    normal: Line::new(sample.kinematics.jacobian, inertia, offset),
+                    slip: Slip::default(),
+                    gap: sample.gap,
+                    gamma: sample.kinematics.gamma,
+                    elasticity: connector.elasticity,
+                    strikes: tie.arrival,
+                    blows: [0.0; 2],
+                    arrives: None,
+                    point: sample.point_a,
+                    source: Source::Connector { connector: index as u32, direction: direction as u32 },
+                };
+                row.normal.impulse = span * tie.forces[direction];
+                rows.push(row);
+            }
+        }
     }
 }
