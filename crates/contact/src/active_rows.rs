@@ -17,6 +17,9 @@ mod factor;
 mod redundant;
 mod refining;
 mod structure;
+mod turned;
+
+pub use turned::TurnedRows;
 
 use crate::exchanges::Exchanges;
 use crate::order::RowOrder;

@@ -40,7 +40,7 @@
 //! | `friction` | [`Modes`], for rows bounded by friction or constants; [`Jump`] |
 //! | `qp` | `Qp`, feature `qp` (default; on wasm it needs wasm-bindgen): clarabel with a polish |
 //! | `auto`, `islands` | [`Auto`] |
-//! | `active_rows` | [`ActiveRows`]: a fixed set of rows as equations, solved repeatedly |
+//! | `active_rows` | [`ActiveRows`]: a fixed set of rows as equations, solved repeatedly; [`TurnedRows`]: some of them slip |
 //! | `row`, `impact` | [`Impact`]: impulses of an impact by an [`ImpactLaw`] |
 //! | `warm` | [`WarmStart`]: carrying an answer over to the next step |
 //! | `json` | feature `json`: problems and answers as files |
@@ -96,7 +96,7 @@ mod twofold;
 mod warm;
 mod words;
 
-pub use active_rows::ActiveRows;
+pub use active_rows::{ActiveRows, TurnedRows};
 pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
