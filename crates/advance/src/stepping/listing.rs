@@ -70,7 +70,8 @@ impl Listing {
                 .map(|(nature, &free)| lengths.span * farthest(nature.reach, free)),
         );
         for place in (0..bodies.count()).filter(|&place| !sleep.is_asleep(place)) {
-            pairs.cover(bodies, BodyId::from_index(place), self.ways[place]);
+            let motion = free[place].map(|velocity| lengths.span * velocity);
+            pairs.cover(bodies, BodyId::from_index(place), motion, lengths.span * lengths.fall);
         }
         self.listed.clear();
         self.listed.resize(pairs.all().len(), false);

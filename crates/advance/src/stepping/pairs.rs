@@ -3,13 +3,15 @@
 //! *Invariant*: two bodies whose boxes overlap are listed once, unless both are fixed or they pass through each other.
 
 use crate::rigid::{PairSurface, Surface};
-use crate::stepping::bodies::{Bodies, Nature};
+use crate::stepping::bodies::{Bodies, Motion3, Nature};
 use crate::stepping::contacts::Contact;
+use glam::DVec2;
 use halfgap_collision::{BodyId, BroadPhase};
 use halfgap_geometry::Aabb;
 
-/// Margin of a box beyond the ways of two steps, as a fraction of the reach of its body [-]: a body at rest is looked up once, one that moves
-/// once in two steps or more.
+/// Number of steps for which a new box is made, and its margin beyond them, as a fraction of the reach of its body [-]: a body at rest is looked
+/// up once, one that moves once in two steps or more.
+const STEPS: f64 = 2.0;
 const MARGIN: f64 = 0.1;
 
 /// A pair of bodies.
@@ -52,8 +54,6 @@ pub(super) struct Pairs {
     found: Vec<BodyId>,
     /// Buffers of pairs that are no more.
     spare: Vec<Vec<Contact>>,
-    /// Way [m] in all up to which each body stays in its box.
-    boxed_until: Vec<f64>,
     target_gap: f64,
 }
 
@@ -66,7 +66,7 @@ impl Clone for Pairs {
 
     /// Uses the buffers again.
     fn clone_from(&mut self, source: &Self) {
-        let Self { all, of_body, broad, excluded, found: _, spare: _, boxed_until, target_gap } = source;
+        let Self { all, of_body, broad, excluded, found: _, spare: _, target_gap } = source;
         self.spare.extend(self.all.drain(all.len().min(self.all.len())..).map(|pair| pair.contacts));
         let (known, further) = all.split_at(self.all.len());
         self.all.clone_from_slice(known);
@@ -78,7 +78,6 @@ impl Clone for Pairs {
         self.of_body.clone_from(of_body);
         self.broad.clone_from(broad);
         self.excluded.clone_from(excluded);
-        self.boxed_until.clone_from(boxed_until);
         self.target_gap = *target_gap;
     }
 }
@@ -88,8 +87,7 @@ impl Pairs {
         let mut excluded: Vec<_> = excluded.into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
         excluded.sort_unstable();
         excluded.dedup();
-        let (of_body, boxed_until) = (vec![Vec::new(); count], vec![f64::NEG_INFINITY; count]);
-        Self { of_body, boxed_until, excluded, target_gap, ..Self::default() }
+        Self { of_body: vec![Vec::new(); count], excluded, target_gap, ..Self::default() }
     }
 
     pub(super) fn excluded(&self) -> &[(BodyId, BodyId)] {
@@ -109,10 +107,10 @@ impl Pairs {
         &self.of_body[body.index()]
     }
 
-    /// Tells how far a body will have gone in all by the end of the step, at most `way` [m] of it within the step; its pairs are found
-    /// anew if it can leave its box.
-    pub(super) fn cover(&mut self, bodies: &Bodies, body: BodyId, way: f64) {
-        if let Some(boxed) = self.extend(bodies, body, way)
+    /// Tells how a body goes in the step, as far as is known, and by how much [m] it may go otherwise; its pairs are found anew if it can
+    /// leave its box.
+    pub(super) fn cover(&mut self, bodies: &Bodies, body: BodyId, motion: Motion3, play: f64) {
+        if let Some(boxed) = self.extend(bodies, body, motion, play)
             && !bodies.is_fixed(body)
         {
             self.drop_far(bodies, body, &boxed);
@@ -120,16 +118,24 @@ impl Pairs {
     }
 
     /// As [`cover`](Self::cover), but drops no pair; returns the box of the body if it is a new one.
-    pub(super) fn extend(&mut self, bodies: &Bodies, body: BodyId, way: f64) -> Option<Aabb> {
-        let gone = bodies.ways[body.index()] + way;
-        if gone <= self.boxed_until[body.index()] {
+    pub(super) fn extend(
+        &mut self,
+        bodies: &Bodies,
+        body: BodyId,
+        [x, y, turn]: Motion3,
+        play: f64,
+    ) -> Option<Aabb> {
+        let nature = &bodies.natures[body.index()];
+        let here = nature.body.shape.bounds_at(&bodies.movings[body.index()].pose);
+        let along = |steps: f64, margin: f64| {
+            let shift = steps * DVec2::new(x, y);
+            let there = Aabb { min: here.min + shift, max: here.max + shift };
+            here.union(there).grown(steps * (turn.abs() * nature.reach + play) + margin + self.target_gap)
+        };
+        if self.broad.bounds(body).is_some_and(|boxed| boxed.contains(&along(1.0, 0.0))) {
             return None;
         }
-        let nature = &bodies.natures[body.index()];
-        let margin = 2.0 * way + MARGIN * nature.reach;
-        self.boxed_until[body.index()] = bodies.ways[body.index()] + margin;
-        let boxed =
-            nature.body.shape.bounds_at(&bodies.movings[body.index()].pose).grown(margin + self.target_gap);
+        let boxed = along(STEPS, MARGIN * nature.reach);
         self.broad.set(body, boxed);
         let mut found = std::mem::take(&mut self.found);
         self.broad.find_overlapping(&boxed, &mut found);

@@ -48,7 +48,7 @@ impl Passing {
         bodies: &mut Bodies,
         (pairs, ties): (&mut Pairs, &Ties),
         tolerances: &Tolerances,
-        span: f64,
+        (span, fall): (f64, f64),
     ) {
         self.ways.clear();
         self.ways.extend(
@@ -63,7 +63,8 @@ impl Passing {
             return;
         }
         for place in (0..bodies.count()).filter(|&place| self.ways[place] > 0.0) {
-            pairs.extend(bodies, BodyId::from_index(place), self.ways[place]);
+            let motion = bodies.courses[place].middle.map(|velocity| span * velocity);
+            pairs.extend(bodies, BodyId::from_index(place), motion, span * fall);
         }
         self.stops.clear();
         self.stops.resize(bodies.count(), span);

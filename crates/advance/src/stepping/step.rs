@@ -166,7 +166,7 @@ impl Stepper {
         }
         if settings.rigid.collisions {
             let Scene { bodies, pairs, ties, .. } = scene;
-            self.passing.stop(bodies, (pairs, ties), &settings.rigid.tolerances, span);
+            self.passing.stop(bodies, (pairs, ties), &settings.rigid.tolerances, (span, self.fall));
         }
     }
 
