@@ -73,6 +73,11 @@ impl Found {
     pub(super) fn normal(&self) -> DVec2 {
         if self.sample.primary_is_a { self.sample.normal } else { -self.sample.normal }
     }
+
+    /// The place of the contact, between the points of both bodies [m].
+    fn middle(&self) -> DVec2 {
+        0.5 * (self.sample.point_primary + self.sample.point_normal)
+    }
 }
 
 /// Directions of normals that differ by less than this sine belong to one place.
@@ -92,7 +97,7 @@ pub(super) fn find_contacts(
         found.push(Found { features, sample: *sample });
     });
     if found.len() > 1 {
-        drop_doubles(found, nearness);
+        drop_doubles([a.0, b.0], found, nearness);
     }
     gone.clear();
     gone.append(contacts);
@@ -114,14 +119,23 @@ pub(super) fn find_contacts(
             None => Contact::new(*features, sample.normal),
         });
     }
-    // What pressed and is gone has become one of those that are new.
+    // What pressed and is gone has become the nearest of those that are new.
     for old in gone.iter_mut().filter(|old| old.presses) {
-        let heirs = contacts.iter_mut().filter(|contact| {
+        let Some(place) =
+            measure([a, b], old.features).map(|sample| Found { features: old.features, sample })
+        else {
+            continue;
+        };
+        let distance = |next: &Found| (next.middle() - place.middle()).length();
+        let heirs = contacts.iter_mut().zip(found.iter()).filter(|(contact, next)| {
             !contact.presses
                 && contact.arrival.is_none()
-                && contact.features.iter().zip(old.features).any(|(&own, other)| own == other)
+                && next.normal().dot(place.normal()) > 0.0
+                && distance(next) <= nearness.reach
         });
-        if let Some(heir) = heirs.min_by_key(|heir| heir.features) {
+        if let Some((heir, _)) =
+            heirs.min_by(|(_, one), (_, other)| distance(one).total_cmp(&distance(other)))
+        {
             let Contact { features, .. } = *heir;
             // The coordinate is another one: its value is set where it is next measured.
             let hold = if old.hold == Hold::Slips { Hold::Slips } else { Hold::Here };
@@ -167,25 +181,34 @@ fn has_left_arc(sample: &GapSample, sides: [(&Feature, &Pose); 2]) -> bool {
     sample.excess_primary > 0.0 || sample.excess_normal > 0.0
 }
 
-/// Drops what is found twice at one place, by a corner and by the edge beside it: what overlaps more stays, or the earlier.
-fn drop_doubles(found: &mut Vec<Found>, nearness: &Nearness) {
-    let middle = |sample: &GapSample| 0.5 * (sample.point_primary + sample.point_normal);
+/// Drops what is found twice at one place, by a corner and by the edge beside it: what overlaps more stays, or the earlier; two corners go, since
+/// where they lie on each other their normal is rounding.
+fn drop_doubles([a, b]: [&Shape; 2], found: &mut Vec<Found>, nearness: &Nearness) {
+    let are_corners = |found: &Found| {
+        let [p, q] = [a.feature(found.features[0]), b.feature(found.features[1])];
+        [p, q].into_iter().all(|feature| feature.radius() == Some(0.0))
+    };
     let mut kept = 0;
     for next in 0..found.len() {
-        let (normal, sample) = (found[next].normal(), found[next].sample);
-        let double = (0..kept).find(|&other| {
-            let (p, q) = (normal, found[other].normal());
-            let other = &found[other].sample;
-            let near = sample.gap.abs().max(other.gap.abs()) + nearness.overrun;
+        let own = found[next];
+        let double = (0..kept).find(|&place| {
+            let other = &found[place];
+            let (p, q) = (own.normal(), other.normal());
+            let near = own.sample.gap.abs().max(other.sample.gap.abs()) + nearness.overrun;
             p.dot(q) > 0.0
                 && p.perp_dot(q).abs() < ONE_PLACE
-                && (middle(&sample) - middle(other)).length() <= near
+                && (own.middle() - other.middle()).length() <= near
         });
         match double {
-            Some(other) if sample.gap < found[other].sample.gap => found[other] = found[next],
-            Some(_) => {}
+            Some(other) => {
+                let sharp = [&own, &found[other]].map(are_corners);
+                let is_better = own.sample.gap < found[other].sample.gap;
+                if sharp[1] && !sharp[0] || sharp[0] == sharp[1] && is_better {
+                    found[other] = own;
+                }
+            }
             None => {
-                found[kept] = found[next];
+                found[kept] = own;
                 kept += 1;
             }
         }

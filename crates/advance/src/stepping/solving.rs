@@ -57,7 +57,7 @@ pub(super) fn solve(
         0..=LARGEST_SMALL if !is_loose => Some(Effort::Full),
         // Without forces to begin with.
         0..=LARGEST_QUIET if is_start => Some(Effort::Full),
-        0..=LARGEST_QUIET if is_quiet => Some(Effort::Near),
+        0..=LARGEST_QUIET if is_quiet && !is_loose => Some(Effort::Near),
         _ => None,
     };
     let mut is_solved =

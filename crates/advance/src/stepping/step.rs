@@ -36,9 +36,6 @@ use crate::time::Time;
 
 /// Residual beyond which what moves is left to sweeps [-].
 const LOOSE: f64 = 1e-3;
-/// Speed up to which an island is quiet there, as a fraction of that which forces make in a step [-]. With 1 a pile of 200 discs in which one
-/// rolls on for ever is solved exactly in each step, which takes half of its time.
-const CALM: f64 = 0.1;
 /// A contact is slow if it closes no faster than forces make it in so many steps.
 pub(super) const SLOW_STEPS: f64 = 2.0;
 
@@ -218,10 +215,9 @@ impl Stepper {
         let kick = if is_split { 0.5 * span } else { from.kick(span) };
         let (members, list) = self.islands.get(island);
         let is_loose = settings.residual > LOOSE;
-        let quiet = if is_loose { CALM * self.fall } else { self.fall };
         let is_quiet = members.iter().all(|&body| {
             let place = body as usize;
-            farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= quiet
+            farthest(scene.bodies.natures[place].reach, scene.bodies.courses[place].middle) <= self.fall
         });
         let enough = Enough::new(settings.residual, self.fall);
         let means =
