@@ -284,6 +284,32 @@ impl Bodies {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use halfgap_geometry::Shape;
+
+    /// Discs of radii 5 m and 1 m at two places.
+    fn two_discs(places: [DVec2; 2]) -> Bodies {
+        let parts = places.into_iter().zip([5.0, 1.0]).map(|(position, radius)| {
+            let shape = Shape::disc(radius).expect("a fine radius");
+            let body = Body { shape, inverse_mass: 1.0, inverse_moment: 1.0, elasticity: 0.0 };
+            let state = BodyState { position, ..BodyState::default() };
+            BodyPart::new(body, FreeMotion::default(), state)
+        });
+        Bodies::new(parts.collect())
+    }
+
+    #[test]
+    fn what_a_drum_carries_along_goes_past_nothing_and_what_slides_goes_as_far_as_it_slides() {
+        let bodies = two_discs([DVec2::ZERO, DVec2::new(0.0, -4.0)]);
+        let (turn, span) = (0.5, 0.01);
+        // The small disc lies on the inside of the large one, and turns with it about its centre.
+        let carried = [[0.0, 0.0, turn], [4.0 * turn, 0.0, turn]];
+        let past = bodies.way_past([0, 1], carried, span);
+        assert!(past < 0.01 * span * 4.0 * turn, "{past} m");
+        let sliding = [[0.0, 0.0, turn], [0.0, 0.0, 0.0]];
+        let past = bodies.way_past([0, 1], sliding, span);
+        assert!(past >= span * turn * 5.0 && past < span * turn * 5.1, "{past} m");
+        assert_eq!(past, bodies.way_past([1, 0], [sliding[1], sliding[0]], span));
+    }
 
     #[test]
     fn a_step_under_constant_acceleration_is_a_parabola() {

@@ -392,3 +392,38 @@ fn rays_go_in_directions_of_any_length() {
         assert_eq!(block.cast_ray(&ray, f64::INFINITY), None, "{direction}");
     }
 }
+
+#[test]
+fn convex_shapes_are_told_from_those_with_a_hollow_a_hole_or_a_corner_that_points_inwards() {
+    let shape = |shape: Result<Shape, _>| shape.expect("a fine shape");
+    let points =
+        |points: &[[f64; 2]]| -> Vec<DVec2> { points.iter().map(|&[x, y]| DVec2::new(x, y)).collect() };
+    let dart = points(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.5], [1.0, 2.0]]);
+    let lens = PathSpec {
+        start: DVec2::new(-1.0, 0.0),
+        edges: vec![
+            EdgeSpec::Arc { to: DVec2::new(1.0, 0.0), center: DVec2::new(0.0, 2.0), clockwise: false },
+            EdgeSpec::Arc { to: DVec2::new(-1.0, 0.0), center: DVec2::new(0.0, -2.0), clockwise: false },
+        ],
+    };
+    let hollow = PathSpec {
+        start: DVec2::new(-1.0, 0.0),
+        edges: vec![
+            EdgeSpec::Line { to: DVec2::new(1.0, 0.0) },
+            EdgeSpec::Line { to: DVec2::new(1.0, 2.0) },
+            EdgeSpec::Arc { to: DVec2::new(-1.0, 2.0), center: DVec2::new(0.0, 4.0), clockwise: true },
+            EdgeSpec::Line { to: DVec2::new(-1.0, 0.0) },
+        ],
+    };
+    for (made, is_convex) in [
+        (shape(Shape::disc(1.0)), true),
+        (shape(Shape::block(2.0, 1.0)), true),
+        (shape(Shape::rounded_block(2.0, 1.0, 0.2)), true),
+        (shape(Shape::from_paths(&[lens])), true),
+        (shape(Shape::from_paths(&[hollow])), false),
+        (shape(Shape::polygon(&dart)), false),
+        (shape(Shape::ring(2.0, 1.0)), false),
+    ] {
+        assert_eq!(made.is_convex(), is_convex, "{made:?}");
+    }
+}
