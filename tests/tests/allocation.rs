@@ -189,3 +189,17 @@ fn steps_of_one_length_and_chosen_ones_allocate_nothing() {
         assert_eq!(allocations, 0, "{run}: over {events} events");
     }
 }
+
+#[test]
+fn steps_that_are_chosen_over_impacts_allocate_nothing() {
+    let mut world = world_of(
+        "format = \"halfgap-scene-1\"\ntitle = \"ball\"\n\
+         run = { duration = 200.0, strategy = \"steps\", tolerance = 1e-3 }\n\
+         force = [{ gravity = { acceleration = [0.0, -10.0] } }]\n\
+         [[body]]\nname = \"floor\"\nfixed = true\nshape = { block = { width = 10.0, height = 1.0 } }\n\
+         [[body]]\nname = \"ball\"\nmass = 1.0\nshape = { disc = { radius = 0.2 } }\nposition = [0.0, 1.5]\n",
+    );
+    let (allocations, events) = allocations(&mut world, 50.0, 150.0);
+    assert!(events > 50, "{events} impacts");
+    assert_eq!(allocations, 0, "over {events} impacts");
+}

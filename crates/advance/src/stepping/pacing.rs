@@ -12,6 +12,7 @@ use crate::stepping::settings::SteppingSettings;
 use crate::stepping::sleep::Sleep;
 use crate::stepping::step::{From, Scene, Stepper};
 use crate::stepping::ties::Tie;
+use crate::time::Time;
 
 /// Error, as a share of the tolerance, below which the next steps are twice as long [-]: that of smooth motion grows eightfold with the length
 /// of a step.
@@ -92,6 +93,7 @@ impl Pacing {
     ) -> f64 {
         let Self { kept, long, report, .. } = self;
         let mut begin = |scene: &mut Scene, (time, span): (f64, f64), from: From| {
+            report.begin(Time::from_seconds(time));
             stepper.begin(scene, (settings, time, span), from, (books, report));
         };
         begin(scene, (time, 2.0 * span), from);
