@@ -1,8 +1,9 @@
 //! Rate, Jacobian and acceleration term of the slip between two features, and the coordinate whose rate the slip is.
 //!
-//! With the gap ĝ that a contact keeps, both radii are inflated by half of it, rA = rhoA + ĝ/2 and rB = rhoB + ĝ/2 (a line
-//! is shifted by ĝ/2 and has rB = 0), so that both bodies touch at *one* point, p = cA - rA n = cB + rB n: equal and
-//! opposite forces at two points would leave a couple. With t the normal turned +90 degrees, arms R1 = p - xA and
+//! With the gap ĝ that a contact keeps, radii are inflated so that both bodies touch at *one* point, p = cA - rA n = cB + rB n:
+//! equal and opposite forces at two points would leave a couple. Both grow alike, rA = rhoA (1 + e) and rB = rhoB (1 + e) with
+//! e = ĝ/(rhoA + rhoB), so that bodies roll on each other in the ratio of their own radii. A line is shifted by all of ĝ and has
+//! rB = 0, and rA = rhoA: a disc rolls on it with its own radius. With t the normal turned +90 degrees, arms R1 = p - xA and
 //! R2 = p - xB, U1 and U2 to the centres (line: U2 = p - xB), u the relative velocity of the centres (line: against the
 //! material point), w_n = t.n' the turning rate of the normal, and the speeds sA and sB at which the surfaces run
 //! counter-clockwise along their outlines:
@@ -20,6 +21,10 @@ use crate::motion::Moving;
 use glam::DVec2;
 use halfgap_geometry::{GapKind, GapSample};
 use std::f64::consts::TAU;
+
+/// Gap beside the sum of two radii [-] up to which both grow alike: the point of contact stays within some radii of the bodies'
+/// surfaces.
+const LEAST_RATIO: f64 = 1e-3;
 
 /// Rate and acceleration terms of the slip at one contact at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,17 +53,28 @@ pub struct Touch<'a> {
 }
 
 impl Touch<'_> {
-    /// Radii [m] inflated by half the gap; 0 for a line, which is shifted instead.
-    fn inflated(&self) -> [f64; 2] {
-        self.radii.map(|radius| radius.map_or(0.0, |radius| radius + 0.5 * self.kept_gap))
+    /// Radii [m] at which the bodies touch; 0 for a line.
+    #[must_use]
+    #[inline]
+    pub fn inflated(&self) -> [f64; 2] {
+        let ([a, b], gap) = (self.radii, self.kept_gap);
+        let a = a.unwrap_or(0.0);
+        let Some(b) = b else { return [a, 0.0] };
+        // Two corners, or a disc in a hole of its own size, have no ratio to keep.
+        let sum = a + b;
+        if gap.abs() < LEAST_RATIO * sum.abs() {
+            [a, b].map(|radius| radius * (1.0 + gap / sum))
+        } else {
+            [a, b].map(|radius| radius + 0.5 * gap)
+        }
     }
 
     /// The point at which each of the two bodies touches [m]. They are one where the gap is the one that is kept.
     #[must_use]
     #[inline]
     pub fn points(&self) -> [DVec2; 2] {
-        let (sample, [ra, _]) = (self.sample, self.inflated());
-        let beyond = self.radii[1].unwrap_or(0.0) + 0.5 * self.kept_gap;
+        let (sample, [ra, rb]) = (self.sample, self.inflated());
+        let beyond = if self.radii[1].is_some() { rb } else { self.kept_gap };
         [sample.center_primary - sample.normal * ra, sample.center_normal + sample.normal * beyond]
     }
 
@@ -121,6 +137,7 @@ pub fn turned(direction: DVec2, near: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use halfgap_geometry::{DirectionRange, Feature, Pose, RoundFeature};
 
     #[test]
     fn the_angle_of_a_direction_follows_it_through_turns() {
@@ -130,5 +147,38 @@ mod tests {
             angle = turned(DVec2::from_angle(truth), angle);
             assert!((angle - truth).abs() < 1e-13 * (1.0 + truth), "{angle} for {truth}");
         }
+    }
+
+    #[test]
+    fn bodies_roll_in_the_ratio_of_their_own_radii_and_touch_at_one_point() {
+        let round = |radius: f64| {
+            Feature::Round(RoundFeature { center: DVec2::ZERO, radius, range: DirectionRange::Full })
+        };
+        let still = Moving::BACKGROUND;
+        for (a, b, apart) in [(0.5, 2.0, 2.5), (0.5, -2.0, 1.5), (0.0, 1.0, 1.0)] {
+            let kept_gap = 1e-5;
+            let place = DVec2::from_angle(0.7) * if b < 0.0 { apart - kept_gap } else { apart + kept_gap };
+            let moved = Moving { pose: Pose::new(place, 0.0), ..still };
+            let sample = GapSample::measure_unbounded(&round(a), &moved.pose, &round(b), &still.pose)
+                .expect("two discs");
+            assert!((sample.gap - kept_gap).abs() < 1e-15, "{}", sample.gap);
+            let touch =
+                Touch { sample: &sample, radii: [Some(a), Some(b)], bodies: [&moved, &still], kept_gap };
+            let [ra, rb] = touch.inflated();
+            assert!((ra * b - rb * a).abs() < 1e-15, "{ra} and {rb} of {a} and {b}");
+            let [p, q] = touch.points();
+            assert!((p - q).length() < 1e-14, "{p} and {q}");
+        }
+    }
+
+    #[test]
+    fn corners_that_lie_on_each_other_share_the_gap() {
+        let still = Moving::BACKGROUND;
+        let corner =
+            Feature::Round(RoundFeature { center: DVec2::ZERO, radius: 0.0, range: DirectionRange::Full });
+        let pose = Pose::new(DVec2::new(0.0, 1e-3), 0.0);
+        let sample = GapSample::measure_unbounded(&corner, &pose, &corner, &still.pose).expect("two corners");
+        let touch = Touch { sample: &sample, radii: [Some(0.0); 2], bodies: [&still; 2], kept_gap: 1e-3 };
+        assert_eq!(touch.inflated(), [5e-4; 2]);
     }
 }
