@@ -33,6 +33,9 @@ const FORGOTTEN: f64 = 0.7;
 const ENOUGH: f64 = 1e-3;
 /// Cap on rounds. Walls and heaps take some tens; from a thousand on none was seen to end.
 const ROUNDS: usize = 1000;
+/// Cap on rounds with few rows, for which there are other methods; and how many rows are few.
+const FEW_ROUNDS: usize = 40;
+const FEW_ROWS: usize = 64;
 /// Cap on repeated corrections of forces with the right modes: one does, unless masses are far apart.
 const CORRECTIONS: usize = 10;
 
@@ -163,7 +166,7 @@ impl Modes {
     fn descend(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
         let load = self.rows.load_size();
         let (mut epsilon, mut floor, mut rest) = (FIRST, FINEST, 1.0);
-        for _ in 0..ROUNDS {
+        for _ in 0..if problem.len() > FEW_ROWS { ROUNDS } else { FEW_ROUNDS } {
             let enough = ENOUGH * epsilon.min(TELLING).min(rest) * load;
             let (rows, equations) = (&self.rows, &mut self.equations);
             let numbers = [epsilon, enough];

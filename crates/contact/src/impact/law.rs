@@ -120,7 +120,7 @@ const ROUNDING_OF_BOUND: f64 = 4.0 * f64::EPSILON;
 
 /// Number of passes without elasticity that may follow a law to bring rows to rest. Each pass after the first removes
 /// the violations that the one before left by rounding or by nearly dependent rows.
-const FINAL_PASSES: usize = 4;
+pub(super) const FINAL_PASSES: usize = 4;
 
 impl ImpactLaw {
     /// Finds the impulses of an impact. `impact_index` is the number of impacts before it in its run; with the order

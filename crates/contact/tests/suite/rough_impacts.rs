@@ -248,3 +248,27 @@ fn numbers_that_are_none_are_refused() {
     let error = ImpactLaw::Hybrid.resolve(&mut impact, ImpactOrder::Fastest, 0).expect_err("it is none");
     assert!(matches!(error, ImpactError::BadRow { row: 0, .. }), "{error}");
 }
+
+#[test]
+fn what_contacts_were_unloaded_by_comes_back_with_friction() {
+    // A disc of 1 kg that slides and opens a little, but is pressed down by more than that.
+    let inertia = [InverseInertia { inverse_mass: 1.0, inverse_moment: 8.0 }, FIXED];
+    let bodies = [BodyId(0), BodyId(1)];
+    let (opens, carried, slip) = (1e-3, 5e-3, 2.0);
+    let row = CollisionRow::new(bodies, [0.0, 1.0, 0.0, 0.0, -1.0, 0.0], inertia, opens);
+    for (coefficient, expected) in [(0.0, 0.0), (0.3, 0.3)] {
+        let mut impact = Impact::new();
+        impact.set_rows([row]);
+        impact
+            .set_friction(0, FrictionRow::new([-1.0, 0.0, -0.5, 1.0, 0.0, 0.0], inertia, slip, coefficient));
+        impact.unload(&[carried]);
+        impact.try_inelastic().expect("one contact");
+        // It comes to rest by what it opened, less than it carried.
+        assert!(impact.rates()[0].abs() < 1e-12, "{:?}", impact.rates());
+        assert!((impact.impulses()[0] + opens).abs() < 1e-12, "{:?}", impact.impulses());
+        let pressed = carried - opens;
+        assert!((impact.friction_impulse(0) + expected * pressed).abs() < 1e-12, "{coefficient}");
+        let slowed = slip - expected * pressed * (1.0 + 8.0 * 0.25);
+        assert!((impact.slip_speed(0) - slowed).abs() < 1e-12, "{coefficient}: {}", impact.slip_speed(0));
+    }
+}

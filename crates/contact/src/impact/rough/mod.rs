@@ -14,12 +14,13 @@ mod serial;
 pub use routh::Restitution;
 
 use super::Impact;
-use super::law::{ImpactError, ImpactLaw, ImpactOrder};
+use super::law::{FINAL_PASSES, ImpactError, ImpactLaw, ImpactOrder};
 use super::patience::Patience;
 use super::shuffle::Shuffle;
 use crate::friction::FrictionMethods;
 use crate::problem::{InverseInertia, Problem};
 use crate::row::{CollisionRow, response};
+use crate::settings::Settings;
 use crate::solution::Solution;
 use crate::words;
 use motion::BodyMotions;
@@ -103,6 +104,13 @@ impl Impact {
         self.rough().and_then(|rough| rough.impulses.get(row).copied()).unwrap_or(0.0)
     }
 
+    /// The tangential row of each row with its impulse [N s], `None` for a row without friction; nothing where no row has some.
+    pub fn friction(&self) -> impl Iterator<Item = Option<(&FrictionRow, f64)>> {
+        let rough = self.rough().into_iter();
+        let rows = rough.flat_map(|rough| rough.rows.iter().zip(&rough.impulses));
+        rows.map(|(friction, &impulse)| Some((friction.as_ref()?, impulse)))
+    }
+
     /// Slip speed [m/s] of a row after the impulses; 0 if it has no friction.
     #[must_use]
     pub fn slip_speed(&self, row: usize) -> f64 {
@@ -143,7 +151,7 @@ impl Impact {
     ) -> Result<(), ImpactError> {
         let small = self.begin()?;
         let mut rough = self.rough.take().unwrap_or_default();
-        rough.begin(&self.rows);
+        self.load_rough(&mut rough);
         let outcome = self.resolve_with(&mut rough, law, order, impact_index, small);
         self.rough = Some(rough);
         outcome
@@ -167,10 +175,36 @@ impl Impact {
             None => self.rebound_rough(rough, &self.all_movable())?,
             Some(grouping) => self.solve_rough(rough, grouping, shuffle.as_mut(), &mut patience)?,
         }
-        if self.is_any_violated(small) {
+        self.finish_rough(rough, small)
+    }
+
+    /// Stops rows that are still violated. Rates have the rounding of the fastest slip, however slowly the rows close.
+    fn finish_rough(&mut self, rough: &mut Rough, small: f64) -> Result<(), ImpactError> {
+        let square =
+            |row: &CollisionRow| -> f64 { row.jacobian.iter().zip(&row.response).map(|(j, r)| j * r).sum() };
+        let longest = self.rows.iter().map(square).fold(0.0, f64::max).sqrt();
+        self.noise = self.noise.max(Settings::default().natural_residual * rough.fastest * longest);
+        for _ in 0..FINAL_PASSES {
+            if !self.is_any_violated(small) {
+                break;
+            }
             self.stop_rough(rough, &self.all_movable())?;
         }
         self.conclude(small)
+    }
+
+    /// Takes the rows, with the impulses that were subtracted from them.
+    fn load_rough(&mut self, rough: &mut Rough) {
+        rough.begin(&self.rows);
+        let subtracted = self.impulses.iter().enumerate().filter(|(_, impulse)| **impulse != 0.0);
+        let mut any = false;
+        for (row, &impulse) in subtracted {
+            rough.motions.add(row, &self.rows[row].response, impulse);
+            any = true;
+        }
+        if any {
+            self.renew_rates(rough);
+        }
     }
 
     /// Stops all rows, with friction and without elasticity.
@@ -178,10 +212,11 @@ impl Impact {
     pub(super) fn stop_all_rough(&mut self) -> Result<(), ImpactError> {
         let small = self.begin()?;
         let mut rough = self.rough.take().unwrap_or_default();
-        rough.begin(&self.rows);
+        self.load_rough(&mut rough);
         let outcome = self.stop_rough(&mut rough, &self.all_movable());
+        let outcome = outcome.and_then(|()| self.finish_rough(&mut rough, small));
         self.rough = Some(rough);
-        outcome.and_then(|()| self.conclude(small))
+        outcome
     }
 
     fn all_movable(&self) -> Vec<usize> {
