@@ -8,6 +8,8 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --coarse   # with zones that one can see
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --impulses # with contacts that carry impulses only
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --varied   # reference scenes with other numbers
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --rough    # with friction
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --pushed   # stacks of blocks that slide
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --needs haste,accumulation   # tells which scenes need a remedy
 //! ```
 //!
@@ -15,7 +17,8 @@
 
 use halfgap::{Remedy, RemedySet};
 use halfgap_tests::generate::{
-    billiard_of_seed, coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed,
+    billiard_of_seed, coarse_of_seed, impulses_of_seed, pushed_stack_of_seed, rough_of_seed, scene_of_seed,
+    variation_of_seed,
 };
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial, trial_without};
 use halfgap_tests::shrink::shrink;
@@ -43,6 +46,8 @@ Runs generated scenes and counts what became of them.
   --coarse      in all of this, scenes with zones that one can see
   --impulses    or such whose contacts carry impulses only
   --varied      or reference scenes with other numbers
+  --rough       or scenes with friction
+  --pushed      or three blocks on each other that slide
   --needs R,S   and again where one of these remedies acts, without it";
 
 /// Options that a number follows, and those of the processes that this one starts.
@@ -130,6 +135,10 @@ enum Scenes {
     Impulses,
     /// Reference scenes with other numbers.
     Varied,
+    /// With friction.
+    Rough,
+    /// Stacks that are pushed.
+    Pushed,
 }
 
 impl Scenes {
@@ -139,6 +148,8 @@ impl Scenes {
             Self::Coarse => coarse_of_seed(seed),
             Self::Impulses => impulses_of_seed(seed),
             Self::Varied => variation_of_seed(seed),
+            Self::Rough => rough_of_seed(seed),
+            Self::Pushed => pushed_stack_of_seed(seed),
         }
     }
 
@@ -149,12 +160,14 @@ impl Scenes {
             Self::Coarse => Some("--coarse"),
             Self::Impulses => Some("--impulses"),
             Self::Varied => Some("--varied"),
+            Self::Rough => Some("--rough"),
+            Self::Pushed => Some("--pushed"),
         }
     }
 
     /// The scenes that an option asks for.
     fn asked_for(option: &str) -> Option<Self> {
-        [Self::Coarse, Self::Impulses, Self::Varied]
+        [Self::Coarse, Self::Impulses, Self::Varied, Self::Rough, Self::Pushed]
             .into_iter()
             .find(|scenes| scenes.option() == Some(option))
     }

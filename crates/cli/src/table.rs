@@ -104,6 +104,10 @@ fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
         ("steps of accumulations", ledger.steps),
         ("interventions", ledger.interventions),
         ("damping", ledger.damping),
+        ("jams", ledger.jams),
+        ("friction in impacts", ledger.impact_friction),
+        ("friction", ledger.friction),
+        ("running surfaces", ledger.surfaces),
     ];
     let force_laws = ledger.force_laws.iter().map(|law| (law.law.as_str(), law.work));
     text.push_str("\nenergy ledger\n");

@@ -174,7 +174,11 @@ pub(crate) fn tell(
     };
     let ends = changes.end.iter().map(|row| Event::ContactEnds(told_of(row)));
     let begins = changes.begin.iter().map(|row| Event::ContactBegins(told_of(row)));
-    for event in ends.chain(begins) {
+    let turns = changes.turn.iter().map(|row| match row.friction {
+        Some(friction) if friction.sticks => Event::Sticks(told_of(row)),
+        _ => Event::Slips(told_of(row)),
+    });
+    for event in ends.chain(begins).chain(turns) {
         stops |= on_event(&event).is_break();
     }
     if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -14,6 +14,10 @@ pub enum Event {
     ContactBegins(ContactEvent),
     /// A contact, taut connector or rest in a corner ends.
     ContactEnds(ContactEvent),
+    /// A contact that has stuck slips from now on.
+    Slips(ContactEvent),
+    /// A contact that has slipped sticks from now on.
+    Sticks(ContactEvent),
 }
 
 impl Event {
@@ -22,7 +26,10 @@ impl Event {
     pub fn time(&self) -> f64 {
         match self {
             Self::Impact(impact) => impact.time,
-            Self::ContactBegins(contact) | Self::ContactEnds(contact) => contact.time,
+            Self::ContactBegins(contact)
+            | Self::ContactEnds(contact)
+            | Self::Slips(contact)
+            | Self::Sticks(contact) => contact.time,
         }
     }
 
@@ -31,7 +38,7 @@ impl Event {
     pub fn impact(&self) -> Option<&Impact> {
         match self {
             Self::Impact(impact) => Some(impact),
-            Self::ContactBegins(_) | Self::ContactEnds(_) => None,
+            Self::ContactBegins(_) | Self::ContactEnds(_) | Self::Slips(_) | Self::Sticks(_) => None,
         }
     }
 }
@@ -89,6 +96,39 @@ pub struct ContactForce {
     pub normal: DVec2,
     /// Force on `bodies[0]` along the normal [N], negative only in bilateral connectors; `bodies[1]` gets the opposite.
     pub force: f64,
+    /// Friction, of a contact whose surfaces have some, in an advance by events.
+    pub friction: Option<ContactFriction>,
+}
+
+/// Friction at a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactFriction {
+    /// Force on `bodies[0]` along the normal turned by +90 degrees [N]; `bodies[1]` gets the opposite.
+    pub force: f64,
+    /// Slip speed [m/s] of the surface of `bodies[0]` against that of `bodies[1]`, along the same direction; 0 if the contact sticks.
+    pub slip_speed: f64,
+    /// Largest friction [N] that the contact can bear, sticking or slipping as it does.
+    pub most: f64,
+    /// True if it sticks.
+    pub sticks: bool,
+}
+
+impl ContactFriction {
+    /// Friction as a share of what the contact can bear [-]: 1 of one that slips.
+    #[must_use]
+    pub fn cone_use(&self) -> f64 {
+        if self.most > 0.0 { self.force.abs() / self.most } else { 0.0 }
+    }
+
+    /// Name of what the contact does: "stick", "slip+" or "slip-", by the sign of its slip; friction on the body goes the other way.
+    #[must_use]
+    pub fn mode(&self) -> &'static str {
+        match (self.sticks, self.force <= 0.0) {
+            (true, _) => "stick",
+            (false, true) => "slip+",
+            (false, false) => "slip-",
+        }
+    }
 }
 
 /// A contact that begins or ends, with its force at that moment.

@@ -27,6 +27,14 @@ pub struct Ledger {
     pub interventions: f64,
     /// Work of linear and angular damping [J], a loss.
     pub damping: f64,
+    /// Change by jams [J], a loss: contacts whose slip leaves no forces stop at once.
+    pub jams: f64,
+    /// Loss by friction in impacts and captures [J], which count what elasticity loses.
+    pub impact_friction: f64,
+    /// Heat of contacts that slip [J], negative. An advance by steps counts it among its `steps`.
+    pub friction: f64,
+    /// Work of surfaces that run [J].
+    pub surfaces: f64,
     /// Work of each force law that has no potential, in the order of the laws.
     pub force_laws: Vec<LawWork>,
 }
@@ -47,7 +55,8 @@ impl Ledger {
     pub fn booked(&self) -> f64 {
         let force_laws: f64 = self.force_laws.iter().map(|law| law.work).sum();
         let by_events = self.impacts + self.captures + self.projections + self.steps;
-        by_events + self.interventions + self.damping + force_laws
+        let by_friction = self.jams + self.impact_friction + self.friction + self.surfaces;
+        by_events + by_friction + self.interventions + self.damping + force_laws
     }
 
     /// Returns the error of the integration [J]: the change of the energy since the start less the booked changes.
@@ -131,6 +140,10 @@ mod tests {
             projections: 0.25,
             steps: 0.0,
             interventions: 10.0,
+            jams: 0.0,
+            impact_friction: 0.0,
+            friction: 0.0,
+            surfaces: 0.0,
             damping: -1.0,
             force_laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],
         };

@@ -80,7 +80,7 @@ pub use check::{CheckReport, check};
 pub use connector::ConnectorSpec;
 #[cfg(feature = "scene")]
 pub use estimate::{Difference, ErrorEstimate, TimedDifference, estimate_error};
-pub use event::{ContactEvent, ContactForce, Event, Impact, ImpactRow};
+pub use event::{ContactEvent, ContactForce, ContactFriction, Event, Impact, ImpactRow};
 pub use halfgap_advance::rigid::{Remedy, RemedyCounts, RemedySet};
 pub use halfgap_collision::{
     Anchor, BodyId, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, RailError, RailPath,

@@ -236,7 +236,14 @@ impl Serialize for RemediesJson<'_> {
 /// Serializes energies and booked changes [J], and the error of the integration.
 impl Serialize for Ledger {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let rare = [("steps", self.steps), ("interventions", self.interventions)];
+        let rare = [
+            ("steps", self.steps),
+            ("interventions", self.interventions),
+            ("jams", self.jams),
+            ("impact_friction", self.impact_friction),
+            ("friction", self.friction),
+            ("surfaces", self.surfaces),
+        ];
         let count = rare.iter().filter(|(_, change)| *change != 0.0).count();
         let mut ledger = serializer.serialize_struct("Ledger", 9 + count)?;
         ledger.serialize_field("start", &self.start)?;

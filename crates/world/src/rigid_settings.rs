@@ -5,7 +5,6 @@ use halfgap_advance::ode::Method;
 use halfgap_advance::rigid::{ExtraAcceleration, RigidSettings, Scales, StepControl};
 use halfgap_advance::stepping::SteppingSettings;
 use halfgap_collision::{SearchSettings, Tolerances};
-use halfgap_contact::Restitution;
 
 /// Factor on the sinking of a centre in one step: the corner of a body that turns may sink faster than its centre.
 const SINKING: f64 = 4.0;
@@ -22,6 +21,7 @@ pub(crate) fn rigid_settings(
     RigidSettings {
         impact_law: settings.impact_law,
         order: settings.impact_order,
+        restitution: settings.restitution,
         collisions: settings.collisions,
         search: SearchSettings { depth: sinking(settings, &tolerances, scales), ..derived.search },
         steps: StepControl { largest_step: settings.fixed_step().or(settings.time_step), ..derived.steps },
@@ -42,7 +42,6 @@ const MOST_SLACK: f64 = 1e-4;
 pub(crate) fn stepping_settings(
     rigid: RigidSettings,
     (step, residual): (Option<f64>, f64),
-    restitution: Restitution,
     scales: &Scales,
 ) -> SteppingSettings {
     let length = scales.smallest_radius.unwrap_or(scales.coordinate);
@@ -52,7 +51,6 @@ pub(crate) fn stepping_settings(
         accuracy: step.is_none().then_some(residual * length),
         residual,
         slack,
-        restitution,
         rigid,
     }
 }

@@ -146,7 +146,7 @@ pub fn unwatched(_reached: &Reached) -> ControlFlow<()> {
 pub fn run(world: &mut World, plan: &RunPlan, progress: Progress<'_>) -> RunReport {
     let mut recording = Recording::new(plan.title.clone(), world);
     recording.frames.push(recording.frame_of(world));
-    let start_energy = world.energy();
+    let start_energy = world.energy_to_begin_with();
     let mut stepper = Stepper::new(plan.record);
     let mut stops = Vec::new();
     let mut error = plan.check().err();
@@ -292,15 +292,14 @@ impl Stepper {
         if self.record != Record::Everything {
             return;
         }
-        match event {
-            Event::Impact(impact) => self.impacts.push(impact.clone()),
-            Event::ContactBegins(event) => {
-                self.contacts.push(ContactRecord { change: ContactChange::Begins, event: *event });
-            }
-            Event::ContactEnds(event) => {
-                self.contacts.push(ContactRecord { change: ContactChange::Ends, event: *event });
-            }
-        }
+        let (change, event) = match event {
+            Event::Impact(impact) => return self.impacts.push(impact.clone()),
+            Event::ContactBegins(event) => (ContactChange::Begins, event),
+            Event::ContactEnds(event) => (ContactChange::Ends, event),
+            Event::Slips(event) => (ContactChange::Slips, event),
+            Event::Sticks(event) => (ContactChange::Sticks, event),
+        };
+        self.contacts.push(ContactRecord { change, event: *event });
     }
 }
 

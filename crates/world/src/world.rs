@@ -1,13 +1,13 @@
 //! A world: named bodies, the laws that act on them, and the clock.
 
-use crate::event::{ContactForce, Event, Impact};
+use crate::event::{ContactForce, ContactFriction, Event, Impact};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::invariant_monitor::InvariantMonitor;
 use crate::ledger::{Books, LawWork, Ledger, Turnover};
 use crate::strategy::Strategy;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RowForce};
+use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RowForce, RowFriction};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::Shape;
 use std::sync::Arc;
@@ -113,6 +113,8 @@ pub(crate) struct Start {
     pub(crate) energy_change: f64,
     /// Total energy after the corrections [J].
     pub(crate) energy: f64,
+    /// Time of the start.
+    pub(crate) time: Time,
 }
 
 /// Parts of a world, collected by its builder.
@@ -225,6 +227,14 @@ impl World {
         energy_of(&self.bodies, self.forces(), self.time(), |body| self.state(body), room)
     }
 
+    /// The present energy; at the start that before contacts that slip have [jammed](Ledger::jams).
+    #[must_use]
+    pub fn energy_to_begin_with(&self) -> Energy {
+        let jams = if self.now == self.start.time { self.ledger().jams } else { 0.0 };
+        let Energy { kinetic, potential } = self.energy();
+        Energy { kinetic: kinetic - jams, potential }
+    }
+
     /// Returns the sums of the ledger, with buffers for what they are made from.
     pub(crate) fn books(&self, booked: &mut Booked, room: &mut Vec<Moving>) -> Books {
         self.strategy.write_ledger(self.now, booked);
@@ -244,11 +254,15 @@ impl World {
                 + booked.steps
                 + booked.interventions
                 + booked.damping
+                + booked.jams
+                + booked.impact_friction
+                + booked.friction
+                + booked.surfaces
                 + works(|work| work),
             captures: booked.captures,
             projections: booked.projections,
             given: booked.interventions,
-            works: works(f64::abs),
+            works: works(f64::abs) + booked.surfaces.abs(),
         }
     }
 
@@ -269,6 +283,10 @@ impl World {
             steps: books.steps,
             interventions: books.interventions,
             damping: books.damping,
+            jams: books.jams,
+            impact_friction: books.impact_friction,
+            friction: books.friction,
+            surfaces: books.surfaces,
             force_laws: force_laws
                 .map(|(_, (law, &work))| LawWork { law: law.name().to_owned(), work })
                 .collect(),
@@ -397,6 +415,12 @@ pub(crate) fn contact_force(row: &RowForce) -> ContactForce {
         point: row.point,
         normal: row.normal,
         force: row.force,
+        friction: row.friction.map(|RowFriction { force, slip_speed, most, sticks }| ContactFriction {
+            force,
+            slip_speed,
+            most,
+            sticks,
+        }),
     }
 }
 

@@ -34,13 +34,22 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
-    /// A body has what only steps simulate so far: friction, a surface that runs, or, if it is fixed, a motion.
+    /// A body has what only steps simulate so far: rolling resistance, or, if it is fixed, a motion.
     #[error("body \"{body}\": events do not simulate its {quantity} yet: advance by steps")]
     NeedsSteps {
         /// Name of the body.
         body: String,
         /// What only steps simulate.
         quantity: &'static str,
+    },
+    /// A body has friction where contacts carry impulses only, or where their errors are not projected.
+    #[error(
+        "body \"{body}\": friction needs contacts that carry forces and are projected: leave `contacts` and `stabilization` as they are, or \
+         advance by steps"
+    )]
+    FrictionWithoutForces {
+        /// Name of the body.
+        body: String,
     },
     /// A coordinate or a velocity is so large that its powers overflow, or a coordinate so large that its rounding
     /// hides the smallest body.

@@ -6,6 +6,7 @@
 //! scenes instead.
 
 mod fits;
+mod rough;
 mod seams;
 mod shapes;
 mod stacks;
@@ -13,6 +14,7 @@ mod ties;
 mod variations;
 
 pub use fits::{struck_fit_of_seed, tight_fit_of_seed};
+pub use rough::{pushed_stack_of_seed, rough_of_seed};
 pub use seams::{Drop, drop_of_seed};
 pub use stacks::mixed_stack_of_seed;
 pub use variations::variation_of_seed;

@@ -4,6 +4,7 @@ mod connectors_drift;
 mod dependency_tree;
 mod determinism;
 mod estimate_error;
+mod friction;
 mod groups;
 mod heaps;
 mod impacts;

@@ -382,11 +382,9 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
     let events = "strategy = \"events\"";
     let steps = "strategy = \"steps\"";
     for (run, field, place) in [
-        (events, "friction = 0.5", "body[0].friction"),
-        (events, "static_friction = 0.5", "body[0].static_friction"),
-        (events, "surface_velocity = 0.5", "body[0].surface_velocity"),
+        ("contacts = false, time_step = 0.1", "friction = 0.5", "body[0].friction"),
+        ("stabilization = \"velocity\"", "static_friction = 0.5", "body[0].static_friction"),
         (events, "rolling_resistance = 0.5", "body[0].rolling_resistance"),
-        (events, "tangential_elasticity = 0.5", "body[0].tangential_elasticity"),
         (events, "motion = { angular_velocity = 1.0 }", "body[0].motion"),
         (
             steps,
@@ -403,16 +401,17 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
 
 #[test]
 fn what_only_steps_know_is_refused_from_code_too_and_so_is_a_step_of_no_length() {
-    let build = |strategy: AdvanceBy, friction: f64| {
+    let build = |strategy: AdvanceBy, rolling_resistance: f64| {
         let mut builder = WorldBuilder::new(WorldSettings { strategy, ..WorldSettings::default() });
         let shape = Shape::disc(1.0).expect("a fine radius");
-        let surface = Surface { friction, static_friction: friction, ..Surface::default() };
+        let surface =
+            Surface { friction: 0.5, static_friction: 0.5, rolling_resistance, ..Surface::default() };
         builder.add(BodySpec { surface, ..BodySpec::movable("disc", shape, 1.0, BodyState::default()) });
         builder.build().map(|_| ()).map_err(|error| error.to_string())
     };
     let steps = |step: f64| AdvanceBy::Steps { step: Some(step), residual: 1e-6 };
-    let refused = build(AdvanceBy::Events, 0.5).expect_err("events know no friction");
-    assert_eq!(refused, "body \"disc\": events do not simulate its surface yet: advance by steps");
+    let refused = build(AdvanceBy::Events, 0.5).expect_err("events know no rolling resistance");
+    assert_eq!(refused, "body \"disc\": events do not simulate its rolling resistance yet: advance by steps");
     for step in [0.0, -1.0, f64::NAN] {
         let refused = build(steps(step), 0.5).expect_err("no time goes by");
         assert!(refused.contains("time_step must be positive and finite"), "{refused}");

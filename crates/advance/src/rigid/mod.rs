@@ -76,7 +76,7 @@ pub(crate) use parts::{POSITIVE, check_bodies_of_force_law, keep_to};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
 pub use settings::{ExtraAcceleration, RegionSteps, RigidSettings, StepControl};
-pub use surface::{PairSurface, Surface};
+pub use surface::{PairSurface, RowFriction, Surface};
 pub use system::RigidSystem;
 #[cfg(feature = "save")]
 pub use system::SavedSystem;

@@ -32,7 +32,7 @@ pub struct BodyPart {
     /// Position [m] of the centre of mass, angle [rad], velocity [m/s] and angular velocity [rad/s] at the start, in the
     /// world frame; both velocities are ignored for a fixed body.
     pub state: BodyState,
-    /// What the surface does to bodies that touch it; only steps know of it.
+    /// What the surface does to bodies that touch it; only steps know of rolling resistance.
     pub surface: Surface,
     /// Motion of a fixed body that is moved; only steps know of it. `None` for one that stays, ignored for a movable body.
     pub motion: Option<UniformMotion>,

@@ -5,7 +5,7 @@ use crate::rigid::remedies::RemedySet;
 use crate::rigid::settings::{RegionSteps, RigidSettings, StepControl};
 use crate::rigid::shares::{LARGE, NEGLIGIBLE, TINY};
 use halfgap_collision::{SearchSettings, Tolerances};
-use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 use halfgap_geometry::Aabb;
 
 /// Target gap as a multiple of the tolerance times the smallest body's radius: the gap is a modelling error that
@@ -126,6 +126,7 @@ impl RigidSettings {
             tolerances,
             impact_law: ImpactLaw::default(),
             order: ImpactOrder::default(),
+            restitution: Restitution::default(),
             collisions: true,
             search: SearchSettings { rest: rest_speed, ..SearchSettings::default() },
             method,

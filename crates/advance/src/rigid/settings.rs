@@ -3,7 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::remedies::RemedySet;
 use halfgap_collision::{SearchSettings, Tolerances};
-use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 
 /// Settings of a system: how contacts are judged, impacts resolved, and motions integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct RigidSettings {
     pub impact_law: ImpactLaw,
     /// Order in which serial impact laws take the rows.
     pub order: ImpactOrder,
+    /// What elasticity means where there is friction.
+    pub restitution: Restitution,
     /// True if bodies collide; false if they pass through each other.
     pub collisions: bool,
     /// Limits of the search for contacts.

@@ -16,6 +16,24 @@ pub struct Surface {
     pub tangential_elasticity: f64,
 }
 
+impl Surface {
+    /// A surface without friction.
+    pub const SMOOTH: Self = Self {
+        friction: 0.0,
+        static_friction: 0.0,
+        velocity: 0.0,
+        rolling_resistance: 0.0,
+        tangential_elasticity: 0.0,
+    };
+
+    /// True if it has friction with itself.
+    #[must_use]
+    #[inline]
+    pub fn has_friction(&self) -> bool {
+        self.friction > 0.0 || self.static_friction > 0.0
+    }
+}
+
 /// The surfaces of two bodies that touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -51,6 +69,21 @@ impl PairSurface {
     pub fn has_friction(&self) -> bool {
         self.kinetic > 0.0 || self.sticking > 0.0
     }
+}
+
+/// Friction at a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct RowFriction {
+    /// Force on the primary body along the normal turned by +90 degrees [N]. Where forces are redundant it is shared among contacts
+    /// of one slip as they press.
+    pub force: f64,
+    /// Slip speed [m/s] of the primary side's surface against the other, along the same direction; 0 of a contact that sticks.
+    pub slip_speed: f64,
+    /// Largest friction [N] that the contact can bear, sticking or slipping as it does.
+    pub most: f64,
+    /// True if it sticks.
+    pub sticks: bool,
 }
 
 /// The geometric mean; to the bit one of the two if they are equal.

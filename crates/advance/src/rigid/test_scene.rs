@@ -11,7 +11,7 @@ use crate::rigid::system::RigidSystem;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyState, SearchSettings, Tolerances};
-use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 use halfgap_geometry::Shape;
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
@@ -44,6 +44,7 @@ const DISCS_SOON: f64 = 1e-4;
 pub(crate) const FINE: RigidSettings = RigidSettings {
     impact_law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
+    restitution: Restitution::Energetic,
     method: Method::Dop853,
     search: SearchSettings::STANDARD,
     tolerances: Tolerances { target_gap: FINE_GAP, accuracy: ZONE * FINE_GAP, velocity_tol: FINE_SLOW },

@@ -45,7 +45,7 @@ impl Impacts {
             }
         });
         self.impact.set_rows(made);
-        self.impact.set_restitution(settings.restitution);
+        self.impact.set_restitution(settings.rigid.restitution);
         for (place, &row) in self.listed.iter().enumerate() {
             let row = &rows[row as usize];
             if !row.slip.line.is_some() {

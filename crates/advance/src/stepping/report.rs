@@ -65,6 +65,7 @@ impl Row {
             point: self.point,
             normal: DVec2::new(x, y),
             force,
+            friction: None,
             bouncing: None,
         }
     }
@@ -81,6 +82,7 @@ impl Pair {
             point: sample.point_primary,
             normal: sample.normal,
             force,
+            friction: None,
             bouncing: None,
         }
     }
@@ -124,6 +126,7 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
                 point: sample.point_a,
                 normal: DVec2::new(x, y),
                 force,
+                friction: None,
                 bouncing: None,
             });
         }

@@ -1,7 +1,6 @@
 //! Settings of an advance by steps.
 
 use crate::rigid::{POSITIVE, PartsError, RigidSettings, keep_to};
-use halfgap_contact::Restitution;
 
 /// Settings of an advance by steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,9 +14,7 @@ pub struct SteppingSettings {
     pub residual: f64,
     /// Error of positions [m] that is not corrected.
     pub slack: f64,
-    /// What elasticity means where there is friction.
-    pub restitution: Restitution,
-    /// Thresholds of touching, the impact law and its order, and whether bodies collide; steps need nothing else of it.
+    /// Thresholds of touching, the impact law, its order and what elasticity means with friction, and whether bodies collide; steps need nothing else of it.
     pub rigid: RigidSettings,
 }
 

@@ -7,7 +7,7 @@ use halfgap_advance::rigid::{
 };
 use halfgap_advance::{Time, advance_until};
 use halfgap_collision::{Body, BodyId, BodyState, SearchSettings, Tolerances};
-use halfgap_contact::{ImpactLaw, ImpactOrder};
+use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 use halfgap_geometry::{Pose, Relation, Shape};
 
 pub(crate) const TOLERANCES: Tolerances =
@@ -17,6 +17,7 @@ pub(crate) const SETTINGS: RigidSettings = RigidSettings {
     tolerances: TOLERANCES,
     impact_law: ImpactLaw::Hybrid,
     order: ImpactOrder::Fastest,
+    restitution: Restitution::Energetic,
     collisions: true,
     search: SearchSettings::STANDARD,
     method: Method::Dop853,

@@ -174,7 +174,9 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
     let place = match &error {
         WorldError::DoubleName { name } | WorldError::BadName { name } => body(name, &|_| "name"),
         WorldError::TooLarge { quantity: "gravity", .. } => strongest_gravity(scene),
-        WorldError::NeedsSteps { body: name, .. } => body(name, &|_| "name"),
+        WorldError::NeedsSteps { body: name, .. } | WorldError::FrictionWithoutForces { body: name } => {
+            body(name, &|_| "name")
+        }
         WorldError::BadNumber { body: name, quantity, .. }
         | WorldError::TooLarge { body: name, quantity, .. } => body(name, &|body| field_of(body, quantity)),
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => body(second, &place_of),
@@ -243,7 +245,7 @@ fn field_of(body: &BodyData, quantity: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{SceneFormat, StrategyData};
+    use crate::scene::SceneFormat;
 
     /// The bodies of a scene to which tests add force laws.
     const FORCES: &str = r#"
@@ -422,11 +424,7 @@ mod tests {
         let mut count = 0;
         for entry in std::fs::read_dir(folder).expect("the reference scenes are there") {
             let file = entry.expect("a readable entry").path();
-            let mut scene = Scene::read(&file).unwrap_or_else(|error| panic!("{error}"));
-            // Events know no friction: they are built as what can run them.
-            if scene.bodies.iter().any(|body| body.friction > 0.0) {
-                scene.run.strategy = StrategyData::Steps;
-            }
+            let scene = Scene::read(&file).unwrap_or_else(|error| panic!("{error}"));
             let builder = collect(&scene).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
             let world = builder.build().unwrap_or_else(|error| panic!("{}: {error}", file.display()));
             let off = (0..u32::try_from(scene.connectors.len()).unwrap_or(0))

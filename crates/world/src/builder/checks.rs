@@ -1,11 +1,11 @@
 //! Checks of the input of a world: names, numbers out of range, unknown bodies, coordinates that are too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
-use crate::settings::{AdvanceBy, ToleranceOverrides};
+use crate::settings::{AdvanceBy, Stabilization, ToleranceOverrides};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
-use halfgap_advance::rigid::{FreeMotion, Scales, Surface};
+use halfgap_advance::rigid::{FreeMotion, Scales};
 use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, Tolerances};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
@@ -26,7 +26,8 @@ type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
 /// Refuses what only steps simulate so far.
 fn require_events(body: &BodySpec) -> Result<(), WorldError> {
-    let needs = [("surface", body.surface != Surface::default()), ("motion", body.motion.is_some())];
+    let needs =
+        [("rolling resistance", body.surface.rolling_resistance > 0.0), ("motion", body.motion.is_some())];
     match needs.into_iter().find(|&(_, needs)| needs) {
         Some((quantity, _)) => Err(WorldError::NeedsSteps { body: body.name.clone(), quantity }),
         None => Ok(()),
@@ -47,6 +48,11 @@ impl WorldBuilder {
             check_body(body)?;
             if self.settings.strategy == AdvanceBy::Events {
                 require_events(body)?;
+                let projects =
+                    self.settings.contacts && self.settings.stabilization == Stabilization::Projection;
+                if body.surface.has_friction() && !projects {
+                    return Err(WorldError::FrictionWithoutForces { body: body.name.clone() });
+                }
             }
         }
         for (body, law) in self.bodies.iter().zip(&self.free_motions) {

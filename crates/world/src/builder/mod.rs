@@ -60,7 +60,7 @@ pub struct BodySpec {
     pub state: BodyState,
     /// Coefficient of restitution, 0 to 1; a pair of bodies uses the lesser.
     pub elasticity: f64,
-    /// Friction and what else the surface does; only an advance by [steps](AdvanceBy::Steps) knows of it.
+    /// Friction and what else the surface does; only an advance by [steps](AdvanceBy::Steps) knows of rolling resistance.
     pub surface: Surface,
     /// Motion of a fixed body that is moved; only an advance by [steps](AdvanceBy::Steps) knows of it.
     pub motion: Option<UniformMotion>,
@@ -273,8 +273,8 @@ impl WorldBuilder {
         let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
         warnings.extend(velocity_warning(apart, &tolerances));
         let energy = total(&bodies);
-        let start = Start { displacement, energy_change: energy - given, energy };
         let now = Time::from_seconds(self.settings.start_time);
+        let start = Start { displacement, energy_change: energy - given, energy, time: now };
         let energies = energy_scales(&bodies, acting, &start, (&self.settings, &tolerances));
         let monitor = InvariantMonitor::new(&self.settings, energies);
         let settings = rigid_settings(&self.settings, &scales, tolerances);
@@ -286,11 +286,9 @@ impl WorldBuilder {
         };
         let strategy = match self.settings.strategy {
             AdvanceBy::Events => Strategy::events(parts, settings, now),
-            AdvanceBy::Steps { step, residual } => Strategy::steps(
-                parts,
-                stepping_settings(settings, (step, residual), self.settings.restitution, &scales),
-                now,
-            ),
+            AdvanceBy::Steps { step, residual } => {
+                Strategy::steps(parts, stepping_settings(settings, (step, residual), &scales), now)
+            }
         }
         .map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),

@@ -14,6 +14,8 @@ const LONGEST: f64 = 90.0;
 const SHORTEST: f64 = 1.5;
 /// Length and half-width of an arrow's head [px].
 const HEAD: (f64, f64) = (9.0, 3.5);
+/// Radius of the mark of a contact with friction [px].
+const DOT: f64 = 2.6;
 /// Largest length of an arrow's head, as a fraction of the arrow.
 const HEAD_SHARE: f64 = 0.6;
 
@@ -53,6 +55,12 @@ impl ForceScale {
         svg.open_group(&[("stroke", COLOR), ("stroke-width", "1.6"), ("fill", COLOR)]);
         for arrow in self.arrows(recording, frame) {
             draw_arrow(svg, view.to_page(arrow.from), arrow.along);
+        }
+        // Contacts that stick are dots, those that slip are rings.
+        for contact in &frame.forces {
+            let Some(friction) = contact.friction else { continue };
+            let fill = if friction.sticks { COLOR } else { "#ffffff" };
+            svg.circle(view.to_page(contact.point), DOT, &[("fill", fill)]);
         }
         svg.close_group();
     }
@@ -104,7 +112,8 @@ fn draw_arrow(svg: &mut Svg, from: (f64, f64), along: DVec2) {
 fn pushes(frame: &Frame) -> Vec<Push> {
     let mut pushes: Vec<Push> = Vec::new();
     for contact in &frame.forces {
-        let force = contact.force * contact.normal;
+        let friction = contact.friction.map_or(0.0, |friction| friction.force);
+        let force = contact.force * contact.normal + friction * contact.normal.perp();
         let same = |push: &&mut Push| {
             contact.connector.is_some()
                 && push.contact.connector == contact.connector

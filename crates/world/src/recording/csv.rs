@@ -59,10 +59,11 @@ impl Recording {
     /// # Errors
     /// Errors of the writer.
     pub fn write_contacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "change,time [s],{FORCE_HEADER}")?;
+        let has_friction = self.contacts.iter().any(|record| record.event.contact.friction.is_some());
+        writeln!(out, "change,time [s],{FORCE_HEADER}{}", friction_header(has_friction))?;
         for record in &self.contacts {
             write!(out, "{},{:?},", record.change.name(), record.event.time)?;
-            self.write_force(out, &record.event.contact)?;
+            self.write_force(out, &record.event.contact, has_friction)?;
         }
         Ok(())
     }
@@ -72,22 +73,32 @@ impl Recording {
     /// # Errors
     /// Errors of the writer.
     pub fn write_forces_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "time [s],{FORCE_HEADER}")?;
+        let mut forces = self.frames.iter().flat_map(|frame| &frame.forces);
+        let has_friction = forces.any(|force| force.friction.is_some());
+        writeln!(out, "time [s],{FORCE_HEADER}{}", friction_header(has_friction))?;
         for frame in &self.frames {
             for force in &frame.forces {
                 write!(out, "{:?},", frame.time)?;
-                self.write_force(out, force)?;
+                self.write_force(out, force, has_friction)?;
             }
         }
         Ok(())
     }
 
-    fn write_force(&self, out: &mut dyn Write, force: &ContactForce) -> io::Result<()> {
+    fn write_force(&self, out: &mut dyn Write, force: &ContactForce, has_friction: bool) -> io::Result<()> {
         let [primary, normal] = force.bodies.map(|body| csv_field(self.name(body)));
         let connector = force.connector.map(|id| id.0.to_string()).unwrap_or_default();
         let (point, direction) = (force.point, force.normal);
         let told = numbers([point.x, point.y, direction.x, direction.y, force.force]);
-        writeln!(out, "{primary},{normal},{connector},{told}")
+        write!(out, "{primary},{normal},{connector},{told}")?;
+        match force.friction {
+            Some(friction) => {
+                let told = numbers([friction.force, friction.slip_speed, friction.cone_use()]);
+                writeln!(out, ",{},{told}", friction.mode())
+            }
+            None if has_friction => writeln!(out, ",,,,"),
+            None => writeln!(out),
+        }
     }
 
     /// Writes a line with the energies for each output time.
@@ -103,6 +114,11 @@ impl Recording {
         }
         Ok(())
     }
+}
+
+/// Further columns of forces where any contact has friction.
+fn friction_header(has_friction: bool) -> &'static str {
+    if has_friction { ",mode,friction_force [N],slip_speed [m/s],cone_use" } else { "" }
 }
 
 /// Joins numbers by commas.

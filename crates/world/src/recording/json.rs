@@ -45,6 +45,16 @@ struct ForceJson<'a> {
     point: [f64; 2],
     normal: [f64; 2],
     force: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<FrictionJson>,
+}
+
+#[derive(Serialize)]
+struct FrictionJson {
+    mode: &'static str,
+    force: f64,
+    slip_speed: f64,
+    cone_use: f64,
 }
 
 #[derive(Serialize)]
@@ -126,6 +136,12 @@ impl Recording {
             point: force.point.to_array(),
             normal: force.normal.to_array(),
             force: force.force,
+            friction: force.friction.map(|friction| FrictionJson {
+                mode: friction.mode(),
+                force: friction.force,
+                slip_speed: friction.slip_speed,
+                cone_use: friction.cone_use(),
+            }),
         }
     }
 

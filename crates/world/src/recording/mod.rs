@@ -46,15 +46,21 @@ pub enum ContactChange {
     Begins,
     /// The contact ended.
     Ends,
+    /// The contact has stuck, and slips now.
+    Slips,
+    /// The contact has slipped, and sticks now.
+    Sticks,
 }
 
 impl ContactChange {
-    /// Name in tables: "begins" or "ends".
+    /// Name in tables: "begins", "ends", "slips" or "sticks".
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Begins => "begins",
             Self::Ends => "ends",
+            Self::Slips => "slips",
+            Self::Sticks => "sticks",
         }
     }
 }

@@ -3,13 +3,14 @@
 use super::error::SceneError;
 use super::field_path::FieldPath;
 use super::{BodyData, RunData, Scene, StrategyData};
+use crate::settings::Stabilization;
 
 /// Refuses the first field of the scene that is not supported yet.
 pub(super) fn check_supported(scene: &Scene) -> Result<(), SceneError> {
     let top = FieldPath::top();
     check_run(&scene.run, &top.field("run"))?;
     for (index, body) in scene.bodies.iter().enumerate() {
-        check_body(body, scene.run.strategy, &top.field("body").element(index))?;
+        check_body(body, &scene.run, &top.field("body").element(index))?;
     }
     Ok(())
 }
@@ -28,7 +29,7 @@ fn check_run(run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
 }
 
 /// Refuses what only steps know of, where the scene advances by events, and motions that are none of a constant velocity.
-fn check_body(body: &BodyData, strategy: StrategyData, at: &FieldPath) -> Result<(), SceneError> {
+fn check_body(body: &BodyData, run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
     if let Some(motion) = &body.motion {
         let others = [("oscillate", motion.oscillate.is_some()), ("table", motion.table.is_some())];
         if let Some((field, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
@@ -38,15 +39,23 @@ fn check_body(body: &BodyData, strategy: StrategyData, at: &FieldPath) -> Result
             ));
         }
     }
-    if strategy == StrategyData::Steps {
+    if run.strategy == StrategyData::Steps {
         return Ok(());
     }
+    let is_rough = body.friction > 0.0 || body.static_friction.is_some_and(|friction| friction > 0.0);
+    let projects = run.stabilization.unwrap_or_default() == Stabilization::Projection;
+    if is_rough && !(run.contacts && projects) {
+        let field = if run.contacts { "stabilization" } else { "contacts" };
+        let message = format!(
+            "friction needs contacts that carry forces and are projected: leave `{field}` out of `[run]`, or set `strategy` to `steps`"
+        );
+        return Err(SceneError::new(
+            at.field(if body.friction > 0.0 { "friction" } else { "static_friction" }),
+            message,
+        ));
+    }
     let fields = [
-        ("friction", body.friction > 0.0, "friction"),
-        ("static_friction", body.static_friction.is_some_and(|friction| friction > 0.0), "friction"),
-        ("surface_velocity", body.surface_velocity != 0.0, "a surface that runs"),
         ("rolling_resistance", body.rolling_resistance > 0.0, "rolling resistance"),
-        ("tangential_elasticity", body.tangential_elasticity > 0.0, "tangential elasticity"),
         ("motion", body.motion.is_some(), "a fixed body that moves"),
     ];
     match fields.into_iter().find(|&(_, is_given, _)| is_given) {

@@ -224,7 +224,14 @@ fn pictures_survive_a_million_impacts_and_broken_numbers() {
 fn contact(connector: Option<u32>, normal: glam::DVec2, force: f64) -> ContactForce {
     let normal_body = if connector.is_some() { BodyId::WORLD } else { BodyId(0) };
     let connector = connector.map(ConnectorId);
-    ContactForce { bodies: [BodyId(1), normal_body], connector, point: glam::DVec2::NEG_Y, normal, force }
+    ContactForce {
+        bodies: [BodyId(1), normal_body],
+        connector,
+        point: glam::DVec2::NEG_Y,
+        normal,
+        force,
+        friction: None,
+    }
 }
 
 /// A recording of one frame with a contact, and a pin whose two rows are one force.

@@ -186,7 +186,7 @@ fn what_is_not_simulated_yet_is_refused_by_name() {
         let scene = source.parse().expect("a valid scene");
         source.locate(scene.check_supported().expect_err("not supported")).to_string()
     };
-    insta::assert_snapshot!(refusal("mass = 1.0", "mass = 1.0\nfriction = 0.3"), @"line 17: body[1].friction: friction is not supported by events yet: set `strategy` to `steps` in `[run]`");
+    insta::assert_snapshot!(refusal("mass = 1.0", "mass = 1.0\nrolling_resistance = 0.3"), @"line 17: body[1].rolling_resistance: rolling resistance is not supported by events yet: set `strategy` to `steps` in `[run]`");
     let steps = "duration = 2.0\nstrategy = \"steps\"\ntime_step = 0.01\ncontacts = false";
     insta::assert_snapshot!(refusal("duration = 2.0", steps), @"line 8: run.contacts: steps know no contacts without forces: leave `contacts` out, or set `strategy` to `events`");
 }

@@ -1,9 +1,11 @@
 //! Which of the candidates become active rows, and at which gap.
 
 use crate::rigid::active_set::settling::Settling;
+use crate::rigid::active_set::slips::grip_of;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::bounces::formed_at;
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::contacts::rows::{ActiveRow, RowSource, source_of, with_lean};
 use crate::rigid::contacts::touch::{DEEPEST, Touch};
@@ -61,15 +63,18 @@ pub(crate) fn choose_rows(
     settling: &mut Settling,
     time: Time,
 ) {
-    for &index in &settling.candidates {
+    for place in 0..settling.candidates.len() {
+        let index = settling.candidates[place];
+        let (grip, tangential) = grip_of(settling, index);
         let record = &region.records()[index];
         let lifted = lifted(assembly, pairs, record);
         if lifted.is_some() {
             assembly.remedies().act(Remedy::Lifting);
         }
-        settling
-            .active
-            .extend(active_row(assembly, connectors, record, lifted, time).map(|row| (index, row)));
+        settling.active.extend(
+            active_row(assembly, connectors, (record, grip, tangential), lifted, time)
+                .map(|row| (index, row)),
+        );
     }
     settling.list_touches();
 }
@@ -78,7 +83,7 @@ pub(crate) fn choose_rows(
 fn active_row(
     assembly: &Assembly,
     connectors: &Connectors,
-    record: &Collision,
+    (record, grip, tangential): (&Collision, Grip, f64),
     lifted: Option<f64>,
     time: Time,
 ) -> Option<ActiveRow> {
@@ -86,13 +91,14 @@ fn active_row(
     let bodies = record.bodies();
     let hint = match source {
         RowSource::Connector(id, index) => connectors.states()[id.index()].hint_of(index).copied(),
-        RowSource::Contact(_) => None,
+        RowSource::Contact(_) | RowSource::Anchor(_) => None,
     };
     // Bilateral rows are kept at gap 0, the others where they are, unless they have sunk too deep: moving a rope to
     // its length would move a body that hangs on it by a long arm by much more.
     let bilateral = record.parties.bilateral;
     let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
-    let row = ActiveRow { source, bodies, bilateral, gap, hint, leans: false };
+    let load = [record.response.force.unwrap_or(0.0), tangential];
+    let row = ActiveRow { source, bodies, bilateral, gap, hint, leans: false, grip, load };
     Some(with_lean(assembly, connectors, row, time))
 }
 

@@ -3,19 +3,24 @@
 //! **Invariant**: the rows chosen carry a force that pushes, in a solution in which no candidate accelerates into another.
 //! The room chooses; it moves nothing.
 //!
-//! `settle`: the problem of the candidates, and the order in which it is solved · `settling`: solvers and buffers ·
+//! `settle`: the order in which the problem of the candidates is solved · `posing`: that problem · `relaxing`: forces shared anew · `settling`: solvers and buffers ·
 //! `choosing`: which candidates become active, and at which gap · `hops`: contacts that open and close again at once · `jammed`:
 //! forces of rows that work against each other · `leverless`, `levers`: contacts that act by next to no lever · `dependent`,
-//! `redundant`: candidates that depend on others · `leaving`: contacts that end at once.
+//! `redundant`: candidates that depend on others · `leaving`: contacts that end at once · `slips`: who slips and who
+//! sticks · `jump`: what follows where slips have no forces.
 
 pub(super) mod choosing;
 pub(super) mod dependent;
 pub(super) mod exclusion;
 pub(super) mod hops;
 pub(super) mod jammed;
+pub(super) mod jump;
 pub(super) mod leaving;
 pub(super) mod leverless;
 pub(super) mod levers;
+pub(super) mod posing;
 pub(super) mod redundant;
+pub(super) mod relaxing;
 pub(super) mod settle;
 pub(super) mod settling;
+pub(super) mod slips;

@@ -5,30 +5,31 @@
 //! which watches its gap. Forces of redundant rows are not unique: a row that the solution leaves without force follows
 //! from the others.
 
-use crate::rigid::active_set::choosing::{choose_rows, deactivate_idle, places_of};
+use crate::rigid::active_set::choosing::{choose_rows, deactivate_idle};
 use crate::rigid::active_set::dependent::exclude_dependent;
 use crate::rigid::active_set::exclusion::{Excluded, Exclusion};
 use crate::rigid::active_set::hops::{is_low_hop, may_hop};
 use crate::rigid::active_set::jammed::is_jammed;
 use crate::rigid::active_set::leverless::exclude_leverless;
+use crate::rigid::active_set::posing::{accelerate_region, offset_under, pose_problem};
+use crate::rigid::active_set::relaxing::relax;
 use crate::rigid::active_set::settling::Settling;
+use crate::rigid::active_set::slips::give_way;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::squeezed::{HOPELESS_MASS_RATIO, LARGEST_MASS_RATIO};
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::error::{AdvanceError, Between};
 use crate::rigid::group::groups::Groups;
-use crate::rigid::group::physics::physics;
-use crate::rigid::group::segment::LONGEST_STEP;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
-use crate::rigid::shares::{NEGLIGIBLE, ROUNDED};
+use crate::rigid::shares::NEGLIGIBLE;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyAcceleration, BodyId, Collision};
+use halfgap_collision::{BodyId, Collision};
 use halfgap_contact::SolveError;
 
 /// Outcome of the solve for the forces of the candidates.
@@ -56,6 +57,7 @@ pub(crate) fn settle(
     settling.touches.clear();
     settling.excluded.clear();
     settling.candidates.clear();
+    settling.given_way.clear();
     let is_start = region.cause() == Cause::Start;
     settling.is_start = is_start;
     let rest = match (is_start, region.is_accumulating()) {
@@ -69,28 +71,36 @@ pub(crate) fn settle(
         may_carry_force(view.assembly, record) && record.is_contact(-rest..=share * rest)
     };
     let records = || region.records().iter().enumerate();
-    settling.candidates.extend(records().filter(|(_, record)| is_candidate(record)).map(|(index, _)| index));
+    let Settling { candidates, loose, .. } = &mut *settling;
+    let wanted = records().filter(|(index, record)| is_candidate(record) && !loose.contains(index));
+    candidates.extend(wanted.map(|(index, _)| index));
     let may_hop =
         |settling: &Settling| records().any(|record| could_hop(view.assembly, region, settling, record));
     if settling.candidates.is_empty() && !(with_hops && may_hop(settling)) {
         return Ok(());
     }
     accelerate_region(view.assembly, view.connectors, region, settling, stage, time);
-    let mut solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
+    let mut solved = solve_giving_way(view, region, settling, stage, (time, rest))?;
     // Active contacts may press others back, or keep those that open from coming back.
     while with_hops && solved != Solved::Somehow && add_hops(view.assembly, region, settling, stage) {
-        solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
+        solved = solve_giving_way(view, region, settling, stage, (time, rest))?;
     }
     if solved == Solved::Nothing {
         return Ok(());
     }
+    if region.is_strained() {
+        relax(view, region, settling, stage);
+    }
     // A contact that carries too little to be active is given no force: the others are solved without it.
     while deactivate_idle(view.assembly, view.pairs, region, settling, stage) {
-        solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
+        solve_giving_way(view, region, settling, stage, (time, rest))?;
     }
-    if (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::DependentRows) {
+    // Forces of contacts with friction are shared otherwise.
+    let is_smooth = settling.slips.is_empty();
+    if is_smooth && (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::DependentRows)
+    {
         // The last problem may still have had candidates that then became inactive without a force.
-        pose_problem(view.assembly, region, settling, stage);
+        pose_problem(view.assembly, view.connectors, region, settling, stage);
         exclude_dependent(view.assembly, region, settling, stage);
     }
     choose_rows(view.assembly, view.connectors, view.pairs, region, settling, time);
@@ -99,6 +109,22 @@ pub(crate) fn settle(
         HOPELESS_MASS_RATIO,
         time,
     )
+}
+
+/// Finds the forces of the candidates; contacts whose friction has reached its static bound slip.
+fn solve_giving_way(
+    view: &View<'_>,
+    region: &Region,
+    settling: &mut Settling,
+    stage: &Stage,
+    (time, rest): (Time, f64),
+) -> Result<Solved, AdvanceError> {
+    loop {
+        let solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
+        if solved == Solved::Nothing || !give_way(region, settling) {
+            return Ok(solved);
+        }
+    }
 }
 
 /// Finds the forces of the candidates; excludes some of them if they jam or no solution is found.
@@ -110,7 +136,7 @@ fn solve_candidates(
     stage: &Stage,
     (time, rest): (Time, f64),
 ) -> Result<Solved, AdvanceError> {
-    pose_problem(assembly, region, settling, stage);
+    pose_problem(assembly, connectors, region, settling, stage);
     let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
     if scale == 0.0 && !settling.problem.bilateral().contains(&true) {
         settling.solution.force.clear();
@@ -125,7 +151,7 @@ fn solve_candidates(
         && exclude_leverless(assembly, connectors, region, settling)
     {
         assembly.remedies().act(Remedy::Leverless);
-        pose_problem(assembly, region, settling, stage);
+        pose_problem(assembly, connectors, region, settling, stage);
         is_sound = settling.solve_strictly().is_ok();
         if is_sound && !is_jammed(assembly, region, settling, stage) {
             return Ok(Solved::Soundly);
@@ -134,11 +160,11 @@ fn solve_candidates(
     let remedies = assembly.remedies();
     settling.excluded.retain(|excluded| excluded.why != Exclusion::Distant);
     if remedies.act(Remedy::JammedForces) {
-        exclude_distant(assembly, region, settling, stage);
+        exclude_distant((assembly, connectors), region, settling, stage);
     }
     let mut found = settling.solve_strictly();
     while is_sound && found.is_ok() && readmit_pressed(assembly, region, settling, stage) {
-        pose_problem(assembly, region, settling, stage);
+        pose_problem(assembly, connectors, region, settling, stage);
         found = settling.solve_strictly();
     }
     let solved = if is_sound && !settling.any_excluded(Exclusion::Distant) {
@@ -200,6 +226,7 @@ fn could_hop(
     let is_excluded =
         || Touch::of(record).is_some_and(|touch| settling.is_excluded(touch, Exclusion::Leverless));
     !settling.leaves(index)
+        && !settling.loose.contains(&index)
         && may_carry_force(assembly, record)
         && may_hop(assembly, region, record)
         && !is_excluded()
@@ -232,13 +259,18 @@ pub(crate) fn may_carry_force(assembly: &Assembly, record: &Collision) -> bool {
 
 /// Excludes contacts beyond their target gap, which need not be in contact: a body that fits between two others
 /// with little room touches at most one of them.
-fn exclude_distant(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
+fn exclude_distant(
+    (assembly, connectors): (&Assembly, &Connectors),
+    region: &Region,
+    settling: &mut Settling,
+    stage: &Stage,
+) {
     let Settling { candidates, excluded, .. } = settling;
     let may_stay = |index: &usize| region.records()[*index].gap_state().is_at_target(assembly.sink());
     let distant = candidates.iter().copied().filter(|index| !may_stay(index));
     excluded.extend(distant.map(|record| Excluded::of(region, record, Exclusion::Distant)));
     candidates.retain(may_stay);
-    pose_problem(assembly, region, settling, stage);
+    pose_problem(assembly, connectors, region, settling, stage);
 }
 
 /// Admits again the excluded contacts that the forces found without them press together; true if there are any. A
@@ -260,39 +292,6 @@ fn readmit_pressed(assembly: &Assembly, region: &Region, settling: &mut Settling
     let any = settling.readmit_distant(is_pressed);
     settling.pushed = pushed;
     any
-}
-
-fn accelerate_region(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    region: &Region,
-    settling: &mut Settling,
-    stage: &mut Stage,
-    time: Time,
-) {
-    for &body in region.bodies() {
-        stage.place(body, assembly.trajectory(body).moving_at(time));
-    }
-    assembly.force_laws().list(region.bodies(), &mut settling.force_laws);
-    let physics = physics(assembly, connectors);
-    let of_region = (region.bodies(), settling.force_laws.as_slice());
-    stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
-}
-
-fn pose_problem(assembly: &Assembly, region: &Region, settling: &mut Settling, stage: &Stage) {
-    let problem = &mut settling.problem;
-    let least = f64::EPSILON * assembly.settings().tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
-    region.begin(problem, |body| assembly.inertia(body));
-    for &index in &settling.candidates {
-        let record = &region.records()[index];
-        // Accelerations that move nothing in the longest time are rounding, as are those that remain of
-        // accelerations across the normal.
-        let offset = free_offset(region, record, stage);
-        let least = least.max(ROUNDED * largest_acceleration(region, record, stage));
-        let offset = if offset.abs() > least { offset } else { 0.0 };
-        let Some(row) = region.row_of(record, offset) else { continue };
-        problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
-    }
 }
 
 fn settle_error(
@@ -318,33 +317,6 @@ fn settle_error(
         problem: Box::new(settling.problem.clone()),
         source: Box::new(source),
     }
-}
-
-/// Acceleration [m/s^2] of a record's gap without the forces of rows.
-fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    offset_under(region, record, stage.accelerations())
-}
-
-/// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
-fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
-    let sides = record.bodies();
-    let spins = sides.map(|body| {
-        region
-            .place(body)
-            .map_or(BodyAcceleration::default(), |place| body_acceleration(accelerations[place]))
-    });
-    record.motion.kinematics.acceleration(&spins[0], &spins[1])
-}
-
-/// Largest acceleration [m/s^2] of the centre of a record's bodies without the forces of rows.
-fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    let linear = places_of(region, record)
-        .map(|place| body_acceleration(stage.accelerations()[place]).linear.length());
-    linear.fold(0.0, f64::max)
-}
-
-pub(crate) fn body_acceleration([x, y, angular]: [f64; 3]) -> BodyAcceleration {
-    BodyAcceleration { linear: DVec2::new(x, y), angular }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 use crate::rigid::active_set::exclusion::Excluded;
 use crate::rigid::active_set::levers::Levers;
 use crate::rigid::active_set::redundant::Redundant;
+use crate::rigid::active_set::slips::{Slip, for_each_push};
 use crate::rigid::books::report::RowForce;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::contacts::touch::Touch;
@@ -34,6 +35,21 @@ pub(crate) struct Settling {
     /// Indices of the records that enter the problem.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) candidates: Vec<usize>,
+    /// The friction of the candidates that have some.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) slips: Vec<Slip>,
+    /// The problem is that of a jump: contacts that slip may stop.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) jumps: bool,
+    /// Share [-] by which the bounds of contacts that may stick are less than they are.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) slack: f64,
+    /// Records that are no candidates, as there are forces without them alone.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) loose: Vec<usize>,
+    /// Records whose contacts have begun to slip in this event, with the side to which they do.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) given_way: Vec<(usize, f64)>,
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) excluded: Vec<Excluded>,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -50,9 +66,12 @@ pub(crate) struct Settling {
     /// which its contact was cut.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) forces: Vec<Option<f64>>,
-    /// Contacts that were cut in the event, sorted, with their forces [N].
+    /// The same along the tangents of contacts.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) ended: Vec<(Touch, f64)>,
+    pub(super) along: Vec<Option<f64>>,
+    /// Contacts that were cut in the event, sorted, with their forces [N] along normal and tangent.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) ended: Vec<(Touch, [f64; 2])>,
     /// The solver's initial guess for the candidates.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) guess: WarmStart,
@@ -93,12 +112,18 @@ impl Default for Settling {
             has_pulled: false,
             lenient: solver(lenient),
             candidates: Vec::new(),
+            slips: Vec::new(),
+            jumps: false,
+            slack: 0.0,
+            loose: Vec::new(),
+            given_way: Vec::new(),
             excluded: Vec::new(),
             levers: Levers::default(),
             redundant: Redundant::default(),
             likely: Vec::new(),
             leaving: Vec::new(),
             forces: Vec::new(),
+            along: Vec::new(),
             ended: Vec::new(),
             guess: WarmStart::new(),
             active: Vec::new(),
@@ -122,15 +147,27 @@ impl Settling {
         if self.forces.is_empty() {
             self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
         } else {
-            self.guess.guess_forces(self.candidates.iter().map(|&index| self.forces[index]));
+            let along = |slip: &Slip| slip.number.map(|_| self.along.get(slip.record).copied().flatten());
+            let normal = self.candidates.iter().map(|&index| self.forces[index]);
+            self.guess.guess_forces(normal.chain(self.slips.iter().filter_map(along)));
         }
         let solver = if self.is_start { &mut self.sharing } else { &mut self.solver };
-        solver
-            .solve_from(&self.problem, &self.guess, &mut self.solution)
-            .or_else(|_| solver.solve(&self.problem, &mut self.solution))?;
+        solver.solve_from(&self.problem, &self.guess, &mut self.solution).or_else(|error| match error {
+            // All modes were tried.
+            SolveError::NoModes { .. } => Err(error),
+            _ => solver.solve(&self.problem, &mut self.solution),
+        })?;
         self.forces.resize(self.likely.len(), None);
         for (place, &index) in self.candidates.iter().enumerate() {
             self.forces[index] = Some(self.solution.force[place]);
+        }
+        if !self.slips.is_empty() {
+            self.along.resize(self.likely.len(), None);
+        }
+        for slip in &self.slips {
+            let share = slip.share();
+            let of_slipping = share.map(|share| share * self.solution.force[slip.place]);
+            self.along[slip.record] = slip.number.map(|number| self.solution.force[number]).or(of_slipping);
         }
         Ok(())
     }
@@ -147,6 +184,7 @@ impl Settling {
         self.leaving.clear();
         self.leaving.resize(self.likely.len(), false);
         self.forces.clear();
+        self.along.clear();
     }
 
     /// Releases the active records that open, however low they hop.
@@ -163,17 +201,22 @@ impl Settling {
     /// Starts the next solve from the forces at which contacts were cut, if there were any.
     pub(crate) fn expect_forces(&mut self, region: &Region, ended: &[RowForce]) {
         self.ended.clear();
-        self.ended
-            .extend(ended.iter().filter_map(|row| Some((Touch::new(row.bodies, row.features?), row.force))));
+        let forces = |row: &RowForce| [row.force, row.friction.map_or(0.0, |friction| friction.force)];
+        let told = |row: &RowForce| Some((Touch::new(row.bodies, row.features?), forces(row)));
+        self.ended.extend(ended.iter().filter_map(told));
         if self.ended.is_empty() {
             return;
         }
         self.ended.sort_unstable_by_key(|(touch, _)| *touch);
-        self.forces.extend(region.records().iter().map(|record| {
+        let found = region.records().iter().map(|record| {
             let touch = Touch::of(record)?;
             let place = self.ended.binary_search_by_key(&touch, |(touch, _)| *touch).ok()?;
             Some(self.ended[place].1)
-        }));
+        });
+        for forces in found {
+            self.forces.push(forces.map(|[normal, _]| normal));
+            self.along.push(forces.map(|[_, along]| along));
+        }
     }
 
     /// True if a contact is active from now on.
@@ -197,8 +240,8 @@ impl Settling {
     /// Acceleration [m/s^2] with which the only candidate would close without a force; `None` if there are others or it
     /// would not close.
     pub(crate) fn closing_acceleration(&self) -> Option<f64> {
-        match self.problem.offset() {
-            [offset] if *offset < 0.0 => Some(-offset),
+        match (self.candidates.as_slice(), self.problem.offset()) {
+            ([_], [offset, ..]) if *offset < 0.0 => Some(-offset),
             _ => None,
         }
     }
@@ -212,10 +255,8 @@ impl Settling {
         inertia: impl Fn(BodyId) -> InverseInertia,
         sums: &mut [[f64; 3]],
     ) {
-        for (&index, force) in records.iter().zip(&self.solution.force) {
-            let record = &region.records()[index];
-            let j = &record.motion.kinematics.jacobian;
-            let sides = record.bodies();
+        let mut push = |index: usize, j: &[f64; 6], force: f64| {
+            let sides = region.records()[index].bodies();
             for (side, body) in sides.into_iter().enumerate() {
                 let Some(place) = region.place(body) else { continue };
                 let InverseInertia { inverse_mass, inverse_moment } = inertia(body);
@@ -223,7 +264,11 @@ impl Settling {
                     sums[place][k] += weight * j[3 * side + k] * force;
                 }
             }
+        };
+        for (&index, &force) in records.iter().zip(&self.solution.force) {
+            push(index, &region.records()[index].motion.kinematics.jacobian, force);
         }
+        for_each_push(self, |place, j, force| push(records[place], j, force));
     }
 }
 
@@ -233,6 +278,16 @@ impl Settling {
         for (index, row) in self.active.iter_mut().filter(|(_, row)| row.touch().is_some()) {
             row.set_gap(region.records()[*index].geometry.distance);
         }
+    }
+
+    /// Lets all records be candidates.
+    pub(crate) fn forget_loose(&mut self) {
+        self.loose.clear();
+    }
+
+    /// True if a candidate slips.
+    pub(crate) fn any_slips(&self) -> bool {
+        self.slips.iter().any(|slip| slip.side.is_some())
     }
 
     /// The active rows, with the index of each one's record.

@@ -127,6 +127,12 @@ impl Books {
         self.ledger.steps += change;
     }
 
+    /// Books a change of energy [J] by a jump of velocities where contacts that slip have no forces.
+    pub(crate) fn book_jam(&mut self, change: f64) {
+        self.ledger.jams += change;
+        self.counts.jams += 1;
+    }
+
     /// Books a change of energy [J] by a projection.
     pub(crate) fn book_projection(&mut self, change: f64) {
         self.ledger.projections += change;

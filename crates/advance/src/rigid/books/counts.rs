@@ -20,6 +20,8 @@ pub struct Counts {
     pub accumulations: u64,
     /// Steps of regions whose events accumulated.
     pub region_steps: u64,
+    /// Jumps of velocities where contacts that slip had no forces.
+    pub jams: u64,
     /// Smallest gap [m] seen, negative for overlap; `None` if none was measured.
     pub smallest_gap: Option<f64>,
     /// Largest error of a connector's gap [m] seen; `None` if none was measured.

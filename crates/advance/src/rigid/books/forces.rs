@@ -4,11 +4,13 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::RowForce;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism};
+use crate::rigid::contacts::friction::Grip;
+use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::physics::physics;
 use crate::rigid::group::state::Group;
+use crate::rigid::surface::RowFriction;
 use crate::time::Time;
 use halfgap_collision::Moving;
 
@@ -27,25 +29,58 @@ pub(crate) fn row_forces(
         let mut dynamics =
             Dynamics { physics: physics(assembly, connectors), group: &mut group, stage: &mut stage, start };
         dynamics.evaluate_at(time.since(start));
-        let rows = group.rows().iter().zip(stage.forces());
-        found.extend(rows.map(|(row, &force)| row_force(assembly, connectors, row, stage.movings(), force)));
+        found.extend(told_rows(assembly, connectors, &group, (stage.forces(), stage.movings())));
     }
     found
 }
 
-fn row_force(
-    assembly: &Assembly,
-    connectors: &Connectors,
-    row: &ActiveRow,
-    movings: &[Moving],
-    force: f64,
-) -> RowForce {
-    let (point, normal) = mechanism(assembly, connectors).locate(row, movings);
-    let (connector, features) = match row.source {
-        RowSource::Connector(id, _) => (Some(id), None),
-        RowSource::Contact(features) => (None, Some(features)),
+fn is_anchor(row: &ActiveRow) -> bool {
+    matches!(row.source, RowSource::Anchor(_))
+}
+
+/// What callers are told of the rows of a group, but anchors: these are told with the contacts that they keep.
+fn told_rows<'a>(
+    assembly: &'a Assembly,
+    connectors: &'a Connectors,
+    group: &'a Group,
+    (forces, movings): (&'a [f64], &'a [Moving]),
+) -> impl Iterator<Item = RowForce> + use<'a> {
+    let mechanism = mechanism(assembly, connectors);
+    let rows = group.rows().iter().zip(forces);
+    let with_spares = move || rows.clone().chain(group.spares().iter().map(|row| (row, &row.load[0])));
+    // What the contacts of each anchor bear together.
+    let anchors = group.rows().len() + group.spare_anchors();
+    let mut bounds = vec![0.0; if group.is_rough() { anchors } else { 0 }];
+    for (row, force) in with_spares() {
+        if let Grip::Sticks { coefficient, anchor: Some(anchor) } = row.grip {
+            bounds[anchor as usize] += coefficient * force;
+        }
+    }
+    let along = move |anchor: usize| {
+        forces.get(anchor).copied().unwrap_or_else(|| group.spares()[anchor - forces.len()].load[0])
     };
-    RowForce { bodies: row.bodies, connector, features, point, normal, force, bouncing: None }
+    with_spares().filter(|(row, _)| !is_anchor(row)).map(move |(row, &force)| {
+        let friction = match row.grip {
+            Grip::Slips { side, coefficient, .. } => row.touch().map(|_| {
+                let sides = row.bodies.map(|body| moving_of(movings, body));
+                let most = coefficient * force;
+                let slip_speed = mechanism.slip_speed(row, sides);
+                RowFriction { force: -side * most, slip_speed, most, sticks: false }
+            }),
+            Grip::Sticks { coefficient, anchor: Some(anchor) } => {
+                let (most, anchor) = (coefficient * force, anchor as usize);
+                let share = if bounds[anchor] > 0.0 { most / bounds[anchor] } else { 0.0 };
+                Some(RowFriction { force: share * along(anchor), slip_speed: 0.0, most, sticks: true })
+            }
+            _ => None,
+        };
+        let (point, normal) = mechanism.locate(row, movings);
+        let (connector, features) = match row.source {
+            RowSource::Connector(id, _) => (Some(id), None),
+            RowSource::Contact(features) | RowSource::Anchor(features) => (None, Some(features)),
+        };
+        RowForce { bodies: row.bodies, connector, features, point, normal, force, friction, bouncing: None }
+    })
 }
 
 /// Notes the unilateral rows of a group that is cut, with their forces at the cut.
@@ -56,8 +91,9 @@ pub(crate) fn note_ends(
     books: &mut Books,
     group: &Group,
 ) {
-    for (row, &force) in group.rows().iter().zip(group.end_forces()).filter(|(row, _)| !row.bilateral) {
-        let told = row_force(assembly, connectors, row, groups.stage().movings(), force);
-        books.told.changes.end.push(told);
-    }
+    let unilateral =
+        group.rows().iter().chain(group.spares()).filter(|row| !is_anchor(row)).map(|row| !row.bilateral);
+    let told = told_rows(assembly, connectors, group, (group.end_forces(), groups.stage().movings()));
+    let ends = told.zip(unilateral).filter(|(_, is_unilateral)| *is_unilateral).map(|(told, _)| told);
+    books.told.changes.end.extend(ends);
 }

@@ -18,6 +18,14 @@ pub struct Ledger {
     pub interventions: f64,
     /// Work of damping.
     pub damping: f64,
+    /// Jumps of velocities where contacts that slip have no forces.
+    pub jams: f64,
+    /// Friction in impacts and captures: what of them is no loss by elasticity.
+    pub impact_friction: f64,
+    /// Work of friction while contacts slip: the heat, negative.
+    pub friction: f64,
+    /// Work of surfaces that run on what they touch.
+    pub surfaces: f64,
     /// Work of each force law that has no potential, in the order of [`RigidSystem::laws`]; 0 for the others.
     pub force_laws: Vec<f64>,
 }
@@ -40,6 +48,8 @@ impl Ledger {
         match work {
             Work::Law(law) => self.force_laws[law] += value,
             Work::Damping => self.damping += value,
+            Work::Friction(_) => self.friction += value,
+            Work::Surfaces => self.surfaces += value,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Reports that callers may ask for: forces of rows, contacts that begin and end.
 
 use crate::rigid::error::AdvanceError;
+use crate::rigid::surface::RowFriction;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId};
@@ -22,6 +23,8 @@ pub struct RowForce {
     pub normal: DVec2,
     /// Force on the primary body along the normal [N]: positive pushes the bodies apart.
     pub force: f64,
+    /// Friction at a contact whose surfaces have some.
+    pub friction: Option<RowFriction>,
     /// Duration [s] of the geometric series of bounces, too slow to be resolved, that would have followed under
     /// constant acceleration, of a contact that begins with an impact; `None` where there is no such series.
     pub bouncing: Option<f64>,
@@ -57,6 +60,8 @@ pub struct ContactChanges {
     pub begin: Vec<RowForce>,
     /// Rows that are active no longer, each with its last force.
     pub end: Vec<RowForce>,
+    /// Contacts that go on, but stick from this event on where they have slipped, or slip where they have stuck.
+    pub turn: Vec<RowForce>,
 }
 
 impl Told {
@@ -77,19 +82,21 @@ impl ContactChanges {
     #[must_use]
     #[inline]
     pub fn is_empty(&self) -> bool {
-        self.begin.is_empty() && self.end.is_empty()
+        self.begin.is_empty() && self.end.is_empty() && self.turn.is_empty()
     }
 
     pub(crate) fn clear(&mut self, time: Time) {
         self.time = time;
         self.begin.clear();
         self.end.clear();
+        self.turn.clear();
     }
 
-    /// Drops rows that end only to begin at once. Those in both lists mostly have one order, so each search begins
+    /// Drops rows that end only to begin at once, and notes which of them stick or slip now where they did not. Those in both lists mostly have one order, so each search begins
     /// where the last one ended.
     fn drop_continued(&mut self, goes_on: &mut Vec<bool>) {
-        let begin = &mut self.begin;
+        let Self { begin, turn, .. } = self;
+        let sticks = |row: &RowForce| row.friction.map(|friction| friction.sticks);
         goes_on.clear();
         goes_on.resize(begin.len(), false);
         let mut next = 0;
@@ -99,6 +106,9 @@ impl ContactChanges {
             if let Some(place) = found {
                 goes_on[place] = true;
                 next = place + 1;
+                if sticks(&begin[place]) != sticks(old) {
+                    turn.push(begin[place]);
+                }
             }
             found.is_none()
         });
@@ -139,8 +149,12 @@ pub struct ImpactReport {
     pub time: Time,
     /// The rows that carried an impulse.
     pub rows: Vec<RowReport>,
-    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2 over the rows.
+    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2 over the rows, and over the slips of those with friction.
     pub energy_change: f64,
+    /// What of it is the loss by friction [J], at most 0.
+    pub friction_change: f64,
+    /// What of it is the work of surfaces that run [J].
+    pub surface_work: f64,
     /// States after the impact of the movable bodies on which an impulse acted.
     pub states: Vec<(BodyId, BodyState)>,
 }
@@ -149,6 +163,7 @@ impl ImpactReport {
     /// Begins the report of an impact at a time.
     pub(crate) fn begin(&mut self, time: Time) {
         (self.time, self.energy_change) = (time, 0.0);
+        (self.friction_change, self.surface_work) = (0.0, 0.0);
         self.rows.clear();
         self.states.clear();
     }
@@ -157,6 +172,17 @@ impl ImpactReport {
     pub(crate) fn add(&mut self, row: RowReport, energy: f64) {
         self.rows.push(row);
         self.energy_change += energy;
+    }
+
+    /// Adds the friction of a row: its change of the kinetic energy [J], and what surfaces that run did of it.
+    pub(crate) fn add_friction(&mut self, energy: f64, surface_work: f64) {
+        self.energy_change += energy;
+        self.surface_work += surface_work;
+    }
+
+    /// Sets the loss by friction [J].
+    pub(crate) fn set_friction_loss(&mut self, loss: f64) {
+        self.friction_change = -loss;
     }
 
     /// Adds states of bodies after the impact.
@@ -204,6 +230,7 @@ mod tests {
             point: DVec2::ZERO,
             normal: DVec2::Y,
             force: 1.0,
+            friction: None,
             bouncing: None,
         }
     }
@@ -216,7 +243,24 @@ mod tests {
             ..ContactChanges::default()
         };
         changes.drop_continued(&mut Vec::new());
+        assert!(changes.turn.is_empty());
         assert_eq!(changes.begin, [of(2)]);
         assert_eq!(changes.end, [of(5)]);
+    }
+
+    #[test]
+    fn a_contact_that_goes_on_and_sticks_now_is_told() {
+        let gripped = |body: u32, sticks: bool| {
+            let friction = RowFriction { force: 0.1, slip_speed: 0.0, most: 0.3, sticks };
+            RowForce { friction: Some(friction), ..of(body) }
+        };
+        let mut changes = ContactChanges {
+            begin: vec![gripped(1, true), gripped(2, false), gripped(3, true)],
+            end: vec![gripped(2, false), gripped(1, false)],
+            ..ContactChanges::default()
+        };
+        changes.drop_continued(&mut Vec::new());
+        assert_eq!((changes.turn.len(), changes.begin.len(), changes.end.len()), (1, 1, 0));
+        assert_eq!((changes.turn[0], changes.begin[0]), (gripped(1, true), gripped(3, true)));
     }
 }

@@ -14,11 +14,7 @@ pub(crate) fn write_ledger(
     time: Time,
     ledger: &mut Ledger,
 ) {
-    let Ledger { impacts, captures, projections, steps, interventions, damping, ref force_laws } =
-        books.ledger;
-    let mut room = std::mem::take(&mut ledger.force_laws);
-    room.clone_from(force_laws);
-    *ledger = Ledger { impacts, captures, projections, steps, interventions, damping, force_laws: room };
+    ledger.clone_from(&books.ledger);
     for group in groups.by_leader().iter().flatten() {
         let offset = time.since(group.start());
         for (&work, path) in group.works().iter().zip(group.work_paths()) {

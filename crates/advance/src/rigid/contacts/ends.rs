@@ -19,6 +19,7 @@ impl Mechanism<'_> {
                 let path = connector.path()?;
                 rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
             }
+            RowSource::Anchor(_) => None,
             RowSource::Contact(features) => {
                 let sample = self.sample(row.bodies, features, [a, b]);
                 let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };

@@ -3,7 +3,9 @@
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::touch::Touch;
+use crate::rigid::surface::Surface;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
@@ -22,6 +24,8 @@ pub(crate) const CHANGE_SHARE: f64 = 1.0 / 64.0;
 pub(crate) enum RowSource {
     /// A feature of the primary and one of the normal body.
     Contact([FeatureId; 2]),
+    /// The slip of a contact that sticks, of a feature of the primary and one of the normal body.
+    Anchor([FeatureId; 2]),
     /// A row of a connector, by its index there.
     Connector(ConnectorId, usize),
 }
@@ -40,6 +44,10 @@ pub(crate) struct ActiveRow {
     pub(crate) hint: Option<RailHint>,
     /// It is a corner, sharp or round, that leans off its line.
     pub(crate) leans: bool,
+    /// What friction does at it.
+    pub(crate) grip: Grip,
+    /// Forces [N] that the event found along the normal, of an anchor along the tangent; and of a contact along its tangent.
+    pub(crate) load: [f64; 2],
 }
 
 /// A row at one moment.
@@ -54,6 +62,8 @@ pub(crate) struct RowMoment {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mechanism<'a> {
     pub(crate) trajectories: &'a [Trajectory],
+    /// Surface of each body; none of any if all are smooth.
+    pub(crate) surfaces: &'a [Surface],
     pub(crate) connectors: &'a [Connector],
     pub(crate) tolerances: &'a Tolerances,
 }
@@ -69,6 +79,11 @@ impl Mechanism<'_> {
         &self.trajectories[body.index()].body().shape
     }
 
+    /// Distance [m] from a body's centre of mass to its farthest point.
+    pub(crate) fn trajectory_reach(&self, body: BodyId) -> f64 {
+        self.trajectories[body.index()].reach()
+    }
+
     /// A feature of a body.
     #[inline]
     pub(crate) fn feature(&self, body: BodyId, feature: FeatureId) -> &Feature {
@@ -78,13 +93,19 @@ impl Mechanism<'_> {
     /// Gap and kinematics of a row.
     #[inline]
     pub(crate) fn measure(&self, row: &ActiveRow, movings: &[Moving]) -> RowMoment {
-        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        self.measure_between(row, row.bodies.map(|body| moving_of(movings, body)))
+    }
+
+    /// The same with the two bodies moving like this.
+    #[inline]
+    pub(crate) fn measure_between(&self, row: &ActiveRow, [a, b]: [&Moving; 2]) -> RowMoment {
         match row.source {
             RowSource::Connector(id, index) => {
                 let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
                 RowMoment { gap: sample.gap, kinematics: sample.kinematics }
             }
             RowSource::Contact(features) => self.measure_contact(row.bodies, features, [a, b]),
+            RowSource::Anchor(features) => self.measure_anchor_row(row, features, [a, b]),
         }
     }
 
@@ -159,6 +180,7 @@ impl Mechanism<'_> {
                 let mut sides = row.bodies.iter().zip(features);
                 !sides.all(|(&body, feature)| is_full(self.shape(body).feature(feature)))
             }
+            RowSource::Anchor(_) => false,
             RowSource::Connector(id, _) => {
                 let path = self.connectors[id.index()].path();
                 !self.is_in_corner(row) && path.is_some_and(|path| !path.knots().is_empty())
@@ -174,13 +196,17 @@ impl Mechanism<'_> {
 
     /// Point [m] in the world at which a row's force acts on its primary body, and the normal.
     pub(crate) fn locate(&self, row: &ActiveRow, movings: &[Moving]) -> (DVec2, DVec2) {
-        let [a, b] = row.bodies.map(|body| moving_of(movings, body));
+        self.locate_between(row, row.bodies.map(|body| moving_of(movings, body)))
+    }
+
+    /// The same with the two bodies moving like this.
+    pub(crate) fn locate_between(&self, row: &ActiveRow, [a, b]: [&Moving; 2]) -> (DVec2, DVec2) {
         match row.source {
             RowSource::Connector(id, index) => {
                 let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
                 (sample.point_a, sample.normal)
             }
-            RowSource::Contact(features) => {
+            RowSource::Contact(features) | RowSource::Anchor(features) => {
                 let sample = self.sample(row.bodies, features, [a, b]);
                 (sample.point_primary, sample.normal)
             }
@@ -225,6 +251,7 @@ pub(crate) fn with_lean(
 pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Mechanism<'a> {
     Mechanism {
         trajectories: assembly.trajectories(),
+        surfaces: assembly.surfaces(),
         connectors: connectors.all(),
         tolerances: &assembly.settings().tolerances,
     }
@@ -241,11 +268,17 @@ impl ActiveRow {
         self.hint = hint;
     }
 
-    /// The features of a contact; `None` for a connector's row.
+    /// True for a row of a connector that always acts.
+    #[inline]
+    pub(crate) fn is_joint(&self) -> bool {
+        self.bilateral && matches!(self.source, RowSource::Connector(..))
+    }
+
+    /// The features of a contact; `None` for a connector's row and an anchor's.
     pub(crate) fn touch(&self) -> Option<Touch> {
         match self.source {
             RowSource::Contact(features) => Some(Touch::new(self.bodies, features)),
-            RowSource::Connector(..) => None,
+            RowSource::Anchor(_) | RowSource::Connector(..) => None,
         }
     }
 }

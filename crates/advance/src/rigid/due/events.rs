@@ -2,6 +2,7 @@
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::corners::{go_along, note_corners};
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::gaps::leaves;
 use crate::rigid::contacts::pairs::PairId;
 use crate::rigid::contacts::rows::RowSource;
@@ -97,11 +98,15 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
     let Some((_, end)) = group.event() else { return Ok(()) };
     match end {
         SegmentEnd::Release(row) => {
-            if let Some(touch) = group.rows()[row].touch() {
+            work.region.set_strained(group.shares_forces());
+            // Beyond the rows there are spare anchors.
+            let Some(row) = group.rows().get(row) else { return handle_change(rooms, work) };
+            if let Some(touch) = row.touch() {
                 work.region.set_cause(Cause::Released(touch));
             }
-            let source = group.rows()[row].source;
-            if group.made() == rooms.assembly.now() {
+            let source = row.source;
+            let is_anchor = matches!(source, RowSource::Anchor(_));
+            if group.made() == rooms.assembly.now() && !is_anchor {
                 rooms.zeno.note_pull(rooms.assembly.now());
             }
             if let RowSource::Connector(id, side @ (0 | 1)) = source {
@@ -111,7 +116,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
         }
         SegmentEnd::Change(row) => match (group.rows()[row].touch(), group.rows()[row].source) {
             (_, RowSource::Connector(id, _)) => pass_joint(rooms, work, id),
-            (touch, RowSource::Contact(_)) => {
+            (touch, RowSource::Contact(_) | RowSource::Anchor(_)) => {
                 let left = touch.filter(|&touch| leaves(&rooms.assembly, &rooms.connectors, touch));
                 work.region.set_cause(left.map_or(Cause::Other, Cause::RunOff));
                 if let Some(pair) = left.and_then(|left| rooms.pairs.between(left.bodies[0], left.bodies[1]))
@@ -128,6 +133,13 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
             handle_impact(rooms, work)
         }
         SegmentEnd::Stop(id) => meet_stop(rooms, work, id),
+        SegmentEnd::SlipStop(row) => {
+            let row = &group.rows()[row];
+            if let (Some(touch), Grip::Slips { side, .. }) = (row.touch(), row.grip) {
+                work.region.set_cause(Cause::Stopped(touch, side > 0.0));
+            }
+            handle_change(rooms, work)
+        }
         SegmentEnd::Switch => handle_change(rooms, work),
     }
 }

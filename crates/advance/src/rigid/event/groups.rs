@@ -3,6 +3,7 @@
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::{Connectors, is_rope};
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::gaps::gap_at;
 use crate::rigid::contacts::pairs::Prediction;
 use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism, with_lean};
@@ -88,8 +89,8 @@ fn list_idle(
             let gap = assembly.refire_gap(gap.distance);
             let source = RowSource::Contact(touch.features);
             let bodies = touch.bodies;
-            let (hint, leans) = (None, false);
-            let row = ActiveRow { source, bodies, bilateral: false, gap, hint, leans };
+            let (hint, leans, grip) = (None, false, Grip::Smooth);
+            let row = ActiveRow { source, bodies, bilateral: false, gap, hint, leans, grip, load: [0.0; 2] };
             group.add_idle(with_lean(assembly, connectors, row, assembly.now()));
         }
     }

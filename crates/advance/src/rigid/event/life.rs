@@ -6,7 +6,7 @@ use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, note_kinetic_energy};
 use crate::rigid::books::forces::note_ends;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::mechanism;
+use crate::rigid::contacts::rows::{ActiveRow, mechanism};
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::rails::{note_hints, note_ways, renew_hints};
 use crate::rigid::event::rooms::Rooms;
@@ -44,7 +44,7 @@ pub(crate) fn dissolve(rooms: &mut Rooms, leader: BodyId) {
 }
 
 fn book_works(books: &mut Books, group: &Group) {
-    if group.rows().iter().any(|row| row.bilateral) {
+    if group.rows().iter().any(ActiveRow::is_joint) {
         books.note_connector_error(group.largest_error());
     }
     if let Some(gap) = group.least_gap() {
@@ -75,6 +75,10 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
     let mut inertias = rooms.groups.take_inertias();
     inertias.extend(group.bodies().iter().map(|&body| rooms.assembly.inertia(body)));
     let is_patient = has_pulled(&rooms.zeno, now) && rooms.assembly.remedies().act(Remedy::Patience);
+    let assembly = &rooms.assembly;
+    group.add_friction(&mechanism(assembly, &rooms.connectors), |body| {
+        assembly.trajectory(body).unwound_at(now)
+    });
     group.prepare(now, is_patient, &inertias);
     rooms.groups.put_inertias(inertias);
     for place in 0..group.bodies().len() {
@@ -93,6 +97,10 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
         if dynamics.leave_singular_tree() {
             dynamics.set_out();
         }
+        if dynamics.prescribe_dependent() {
+            dynamics.set_out();
+        }
+        dynamics.note_stress();
     });
     extend_group(rooms, group)
 }

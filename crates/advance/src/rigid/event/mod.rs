@@ -21,6 +21,7 @@ pub(super) mod groups;
 pub(super) mod hops;
 pub(super) mod impacting;
 pub(super) mod intervention;
+pub(super) mod jamming;
 pub(super) mod life;
 pub(super) mod lift;
 pub(super) mod members;

@@ -41,10 +41,14 @@ pub(crate) fn bring_to_one_gap(rooms: &mut Rooms, work: &mut EventWork) {
         let change = displace(rooms, &work.region, &work.lift.shifts);
         rooms.books.book_projection(change);
         remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
-        debug_assert!(
-            farthest(&rooms.assembly, &work.region, &work.settling) <= before.max(accuracy),
-            "contacts are brought nearer to their target"
-        );
+        if farthest(&rooms.assembly, &work.region, &work.settling) > before.max(accuracy) {
+            // Redundant contacts may contradict each other: those stay where they are.
+            work.lift.shifts.as_flattened_mut().iter_mut().for_each(|shift| *shift = -*shift);
+            let change = displace(rooms, &work.region, &work.lift.shifts);
+            rooms.books.book_projection(change);
+            remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, rooms.assembly.now());
+            return;
+        }
         work.settling.hold_where_they_are(&work.region);
     }
 }

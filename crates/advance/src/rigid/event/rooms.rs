@@ -19,6 +19,7 @@ use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::search::searching::Searching;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::Sinking;
+use crate::rigid::surface::Surface;
 use crate::rigid::zeno::memory::Zeno;
 use crate::time::Time;
 use halfgap_collision::{BodyId, Moving};
@@ -52,13 +53,17 @@ pub(crate) struct Rooms {
 impl Rooms {
     /// Makes the rooms of the given parts, with all bodies in flight and nothing predicted.
     pub(crate) fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Self {
-        // Steps know contacts and uniform accelerations only; bodies that go from steps to groups with more are not sound yet.
+        // Steps know smooth contacts and uniform accelerations only; bodies that go from steps to groups with more are not sound yet.
         let is_plain = parts.connectors.is_empty()
             && parts.force_laws.is_empty()
-            && parts.bodies.iter().all(|part| !part.free_motion.is_damped());
+            && parts
+                .bodies
+                .iter()
+                .all(|part| !part.free_motion.is_damped() && part.surface == Surface::default());
         let region_steps = settings.region_steps.filter(|_| is_plain);
         let settings = RigidSettings { region_steps, ..settings };
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;
+        let surfaces = bodies.iter().map(|part| part.surface).collect();
         let trajectory =
             |BodyPart { body, free_motion, state, .. }| Trajectory::new(body, free_motion, state, start);
         let trajectories: Vec<Trajectory> = bodies.into_iter().map(trajectory).collect();
@@ -83,7 +88,7 @@ impl Rooms {
             coupling: Coupling::default(),
             coasting: Vec::new(),
             work: None,
-            assembly: Assembly::new(trajectories, force_laws, settings, start),
+            assembly: Assembly::new(trajectories, force_laws, settings, start).with_surfaces(surfaces),
         }
     }
 
@@ -112,6 +117,7 @@ pub(crate) fn with_work<T>(
     let outcome = act(rooms, &mut work);
     work.region.set_cause(Cause::Other);
     work.region.set_accumulating(false);
+    work.region.set_strained(false);
     (work.repeats, work.fired_open) = (0, false);
     rooms.work = Some(work);
     outcome

@@ -5,6 +5,7 @@ use crate::rigid::active_set::settle::settle;
 use crate::rigid::contacts::pairs::is_likely;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::hops::still_hops;
+use crate::rigid::event::jamming::unjam;
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::region::cause::Cause;
@@ -32,7 +33,21 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
     Ok(())
 }
 
+/// Number of jumps at one time: afterwards forces mostly have a solution, or contacts have come to rest.
+const MOST_JUMPS: usize = 20;
+
 fn settle_region(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
+    work.settling.forget_loose();
+    for _ in 0..MOST_JUMPS {
+        match settle_once(rooms, work, with_hops) {
+            Err(AdvanceError::Contacts { .. }) if work.settling.any_slips() && unjam(rooms, work) => {}
+            outcome => return outcome,
+        }
+    }
+    settle_once(rooms, work, with_hops)
+}
+
+fn settle_once(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
     let mut stage = rooms.groups.take_stage();
     work.settling.note_pull(has_pulled(&rooms.zeno, rooms.assembly.now()));
     let outcome = settle(

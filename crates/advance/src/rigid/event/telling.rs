@@ -40,7 +40,7 @@ fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Sett
 
 fn told_of(record: &Collision, row: &ActiveRow) -> RowForce {
     let features = match row.source {
-        RowSource::Contact(features) => Some(features),
+        RowSource::Contact(features) | RowSource::Anchor(features) => Some(features),
         RowSource::Connector(..) => None,
     };
     RowForce {
@@ -50,6 +50,7 @@ fn told_of(record: &Collision, row: &ActiveRow) -> RowForce {
         point: record.geometry.point_primary,
         normal: record.geometry.normal,
         force: record.response.force.unwrap_or(0.0),
+        friction: row.told_friction(),
         bouncing: None,
     }
 }

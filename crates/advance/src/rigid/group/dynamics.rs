@@ -7,7 +7,7 @@ use crate::ode::Ode;
 use crate::rigid::contacts::rows::{RowSource, moving_of};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::stage::Stage;
-use crate::rigid::group::state::Group;
+use crate::rigid::group::state::{Group, Work};
 use crate::time::Time;
 use halfgap_contact::ActiveRows;
 use std::convert::Infallible;
@@ -87,10 +87,11 @@ impl Dynamics<'_> {
 
     /// Adds the response to the only row to the accelerations: many groups have just one, and need no factorisation.
     fn accelerate_by_row(&mut self) {
-        let (first, second) = (self.response_to_row(0), self.response_to_row(1));
+        let direction = self.only_direction();
+        let (first, second) = (self.response_to_row(0, &direction), self.response_to_row(1, &direction));
         let Stage { offsets, forces, accelerations, solves, .. } = &mut *self.stage;
         let square = first.square + second.square;
-        let force = if square > 0.0 { -offsets[0] / square } else { 0.0 };
+        let force = if square != 0.0 { -offsets[0] / square } else { 0.0 };
         for Response { place, acceleration, .. } in [first, second] {
             if let Some(place) = place {
                 let sum = &mut accelerations[place as usize];
@@ -102,15 +103,24 @@ impl Dynamics<'_> {
         *solves += 1;
     }
 
-    /// Response of the body on one side of the only row.
+    /// Direction of the force of the only row.
     #[inline(always)]
-    fn response_to_row(&self, side: usize) -> Response {
+    fn only_direction(&self) -> [f64; 6] {
+        let normal = self.stage.jacobians[0];
+        let Some(turn) = self.stage.slipping.only_turn() else { return normal };
+        std::array::from_fn(|k| normal[k] + turn[k])
+    }
+
+    /// Response of the body on one side of the only row to a force of a direction.
+    #[inline(always)]
+    fn response_to_row(&self, side: usize, direction: &[f64; 6]) -> Response {
         let Some(place) = self.group.sides[0][side] else { return Response::default() };
         let inertia = self.physics.mechanism.trajectories[self.group.bodies[place as usize].index()].body();
         let jacobian = &self.stage.jacobians[0];
         let [x, y, turning] = [0, 1, 2].map(|k: usize| jacobian[3 * side + k]);
+        let [along_x, along_y, torque] = [0, 1, 2].map(|k: usize| direction[3 * side + k]);
         let acceleration =
-            [inertia.inverse_mass * x, inertia.inverse_mass * y, inertia.inverse_moment * turning];
+            [inertia.inverse_mass * along_x, inertia.inverse_mass * along_y, inertia.inverse_moment * torque];
         let square = acceleration[0] * x + acceleration[1] * y + acceleration[2] * turning;
         Response { place: Some(place), acceleration, square }
     }
@@ -119,28 +129,47 @@ impl Dynamics<'_> {
         self.stage.jacobians.clear();
         self.stage.offsets.clear();
         self.stage.gap_error = 0.0;
+        self.stage.slipping.clear();
         let Physics { mechanism, extra, .. } = self.physics;
         let mut twin = None;
-        for (row, &sides) in self.group.rows.iter().zip(&self.group.sides) {
+        for (index, (row, &sides)) in self.group.rows.iter().zip(&self.group.sides).enumerate() {
             // `measure_next` would tell contacts apart as well; doing it here keeps their measurements in registers.
             if let RowSource::Contact(features) = row.source {
-                let movings = row.bodies.map(|body| moving_of(&self.stage.movings, body));
-                let moment = mechanism.measure_contact(row.bodies, features, movings);
+                let Stage { movings, slipping, .. } = &mut *self.stage;
+                let movings = row.bodies.map(|body| moving_of(movings, body));
+                let moment = match row.grip.slip_share() {
+                    None => mechanism.measure_contact(row.bodies, features, movings),
+                    Some(share) => {
+                        let (moment, slip) = mechanism.measure_slip((row.bodies, features), movings, row.gap);
+                        slipping.add(index, &slip, share);
+                        moment
+                    }
+                };
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             } else {
                 let moment = mechanism.measure_next(row, &self.stage.movings, &mut twin);
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             }
         }
+        self.push_as_prescribed();
         if self.has_a_single_row() {
             self.accelerate_by_row();
         } else {
             self.group.active.factorize(&self.stage.jacobians);
-            self.respond_by_rows();
+            if self.stage.slipping.is_empty() {
+                self.respond_by_rows();
+            } else {
+                self.respond_turned();
+            }
             let Stage { accelerations, changes, .. } = &mut *self.stage;
             for (acceleration, change) in accelerations.iter_mut().zip(changes) {
                 (0..3).for_each(|k| acceleration[k] += change[k]);
             }
+        }
+        let Stage { forces, .. } = &mut *self.stage;
+        forces.iter_mut().zip(&self.group.stress).for_each(|(force, stress)| *force += stress);
+        for &(row, force) in &self.group.prescribed {
+            forces[row as usize] += force;
         }
         if self.stage.asks_force_ranges {
             self.stage.widen_force_ranges();
@@ -199,6 +228,9 @@ impl Dynamics<'_> {
         }
         if !self.group.rows.is_empty() {
             constrain(self);
+            if matches!(self.group.works.last(), Some(Work::Friction(_) | Work::Surfaces)) {
+                self.note_friction_powers(powers);
+            }
         }
         let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;
         position_rates.as_chunks_mut::<3>().0.copy_from_slice(velocities);

@@ -46,6 +46,7 @@ impl Loops {
 mod tests {
 
     use super::*;
+    use crate::rigid::contacts::friction::Grip;
     use halfgap_collision::{BodyId, ConnectorId};
 
     /// True if connectors of two rows each, between the given places of three bodies, close a loop.
@@ -57,6 +58,8 @@ mod tests {
             gap: 0.0,
             hint: None,
             leans: false,
+            grip: Grip::Smooth,
+            load: [0.0; 2],
         };
         let rows: Vec<_> =
             (0..ends.len()).flat_map(|connector| [row(connector, 0), row(connector, 1)]).collect();

@@ -106,7 +106,7 @@ impl Group {
             RowSource::Connector(id, _) => {
                 connectors.connector(id).path().is_some_and(|path| path.is_spline())
             }
-            RowSource::Contact(_) => false,
+            RowSource::Contact(_) | RowSource::Anchor(_) => false,
         });
         let lasted = pasts.map(|past| past.lasted).fold(0.0, f64::max);
         let soon = SEVERAL * lasted;

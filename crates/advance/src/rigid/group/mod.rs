@@ -3,9 +3,9 @@
 //! **Invariant**: between steps the state of a group lies on its active rows, and rates and forces are those of that state;
 //! dense output keeps to the rows within what the watch allows. The room knows no event and no search.
 //!
-//! * data: `state` (a group), `reading`, `making` (its members), `turning` (from one segment to the next), `groups` (all of
-//!   them), `stage` (buffers of one moment), `samples`;
-//! * equations of motion: `physics`, `dynamics` in bodies, `level`, `tree` in angles where bodies hang together by pins;
+//! * data: `state` (a group), `reading`, `making` (its members), `gripping` (what friction adds), `turning` (from one segment to the next), `groups` (all of
+//!   them), `stage` (buffers of one moment), `lending`, `samples`;
+//! * equations of motion: `physics`, `dynamics` in bodies, `friction`, `level`, `tree` in angles where bodies hang together by pins;
 //!   `on_rows` moves stages onto rows that depend on each other; `singular` leads steps over the bifurcation points of
 //!   closed `loops`;
 //! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures` and `inner`; its
@@ -18,9 +18,12 @@ pub(super) mod brief;
 pub(super) mod dynamics;
 pub(super) mod energy;
 pub(super) mod extending;
+pub(super) mod friction;
+pub(super) mod gripping;
 pub(super) mod groups;
 pub(super) mod inner;
 pub(super) mod kinks;
+pub(super) mod lending;
 pub(super) mod level;
 pub(super) mod loops;
 pub(super) mod making;

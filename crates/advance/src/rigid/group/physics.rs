@@ -7,6 +7,7 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::Mechanism;
 use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::{ExtraAcceleration, RigidSettings, StepControl};
+use crate::rigid::surface::Surface;
 use halfgap_collision::{Connector, Moving};
 use std::sync::Arc;
 
@@ -25,12 +26,12 @@ pub(crate) struct Physics<'a> {
 impl<'a> Physics<'a> {
     /// The physics of a system with these parts.
     pub(crate) fn of(
-        trajectories: &'a [Trajectory],
+        (trajectories, surfaces): (&'a [Trajectory], &'a [Surface]),
         connectors: &'a [Connector],
         force_laws: &'a [Arc<dyn ForceLaw>],
         (settings, remedies): (&'a RigidSettings, &'a Remedies),
     ) -> Self {
-        let mechanism = Mechanism { trajectories, connectors, tolerances: &settings.tolerances };
+        let mechanism = Mechanism { trajectories, surfaces, connectors, tolerances: &settings.tolerances };
         let RigidSettings { extra, ref steps, projection: projects, .. } = *settings;
         Self { mechanism, force_laws, extra, steps, remedies, projects }
     }
@@ -44,7 +45,7 @@ impl<'a> Physics<'a> {
 /// The parts of the system from which the motion of groups is computed.
 pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Physics<'a> {
     Physics::of(
-        assembly.trajectories(),
+        (assembly.trajectories(), assembly.surfaces()),
         connectors.all(),
         &assembly.force_laws().all,
         (assembly.settings(), assembly.remedies()),

@@ -3,6 +3,7 @@
 //! Rows that are redundant all along, or nearly dependent near a bifurcation point, may be soft: they share their
 //! force, and projections converge more slowly.
 
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::measures::ROUNDING_SHARE;
 use crate::rigid::group::state::Group;
@@ -24,7 +25,8 @@ pub(crate) const ALL_OF_IT: f64 = 2.0;
 impl Dynamics<'_> {
     /// Makes the rows of connectors soft, so that they share their force, if some depend on others at the end.
     pub(crate) fn soften_dependent(&mut self) {
-        if !self.group.rows.iter().any(|row| row.bilateral) {
+        // With friction forces that are not unique are prescribed.
+        if !self.group.rows.iter().any(ActiveRow::is_joint) || self.group.is_rough() {
             return;
         }
         let end = std::mem::take(&mut self.group.end_state);
@@ -32,10 +34,10 @@ impl Dynamics<'_> {
         self.group.end_state = end;
         let dependent = self.factorize(|_, _| ());
         let Group { rows, active, .. } = &mut *self.group;
-        let mut connectors = (0..rows.len()).filter(|&row| rows[row].bilateral);
+        let mut connectors = (0..rows.len()).filter(|&row| rows[row].is_joint());
         let has_dependent = dependent > 0 && connectors.any(|row| active.is_dependent(row));
         if has_dependent && self.physics.remedies.act(Remedy::SoftRows) {
-            active.soften(|row| rows[row].bilateral);
+            active.soften(|row| rows[row].is_joint());
             self.group.dependent = dependent;
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::ode::SegmentPolynomial;
 use crate::rigid::connectors::store::Stop;
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::state::{Group, SegmentEnd, Work};
 use crate::rigid::group::stiffness::Stiffness;
@@ -117,6 +118,27 @@ impl Group {
     #[inline]
     pub(crate) fn rows(&self) -> &[ActiveRow] {
         &self.rows
+    }
+
+    /// True if friction acts at any of its rows.
+    pub(crate) fn is_rough(&self) -> bool {
+        self.rows.iter().any(|row| row.grip != Grip::Smooth)
+    }
+
+    /// True if forces of its rows are not unique, and shared as the event found them.
+    pub(crate) fn shares_forces(&self) -> bool {
+        !(self.spares.is_empty() && self.prescribed.is_empty())
+    }
+
+    /// Number of spare anchors, which come first among the spare rows.
+    pub(crate) fn spare_anchors(&self) -> usize {
+        self.spares.iter().take_while(|row| matches!(row.grip, Grip::Anchor { .. })).count()
+    }
+
+    /// Rows that follow from others, each with its forces.
+    #[inline]
+    pub(crate) fn spares(&self) -> &[ActiveRow] {
+        &self.spares
     }
 
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.

@@ -3,8 +3,9 @@
 use crate::rigid::bodies::force_law::{Wrench, Wrenches};
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::contacts::rows::{ActiveRow, RowMoment};
+use crate::rigid::group::friction::Slipping;
 use crate::rigid::group::physics::Physics;
-use crate::rigid::group::samples::{NODES, Samples};
+use crate::rigid::group::samples::Samples;
 use crate::rigid::group::state::{Group, Work};
 use crate::rigid::settings::ExtraAcceleration;
 use glam::DVec2;
@@ -29,6 +30,8 @@ pub(crate) struct Stage {
     pub(super) offsets: Vec<f64>,
     /// Forces of the rows [N].
     pub(super) forces: Vec<f64>,
+    /// The contacts that slip.
+    pub(super) slipping: Slipping,
     /// M^-1 J^T f of each body (x, y, angle).
     pub(super) changes: Vec<[f64; 3]>,
     /// Sum of the sizes of all rows' forces on each body [N].
@@ -37,6 +40,8 @@ pub(crate) struct Stage {
     pub(super) levels: Vec<bool>,
     /// Force [N] below which each row counts as without force.
     pub(super) least: Vec<f64>,
+    /// Margin [N] of each row: how much force it may lose before an event.
+    pub(super) margins: Vec<f64>,
     /// The least and the largest force [N] of each row at the stages of the last step.
     pub(super) force_ranges: Vec<[f64; 2]>,
     /// Evaluations note `force_ranges`.
@@ -133,36 +138,6 @@ impl Stage {
     /// Sets the motion of a body.
     pub(crate) fn place(&mut self, body: BodyId, moving: Moving) {
         self.movings[body.index()] = moving;
-    }
-
-    /// Lends out the buffers of watched functions.
-    pub(crate) fn lend_samples(&mut self) -> Samples {
-        std::mem::take(&mut self.samples)
-    }
-
-    /// Takes back the buffers of watched functions.
-    pub(crate) fn take_back_samples(&mut self, samples: Samples) {
-        self.samples = samples;
-    }
-
-    /// Lends out the buffer of sampled forces.
-    pub(crate) fn lend_force_samples(&mut self) -> Vec<[f64; NODES]> {
-        std::mem::take(&mut self.samples.forces)
-    }
-
-    /// Takes back the buffer of sampled forces.
-    pub(crate) fn take_back_force_samples(&mut self, forces: Vec<[f64; NODES]>) {
-        self.samples.forces = forces;
-    }
-
-    /// Lends out the buffer of values at the earliest event.
-    pub(crate) fn lend_there(&mut self) -> Vec<f64> {
-        std::mem::take(&mut self.there)
-    }
-
-    /// Takes that buffer back.
-    pub(crate) fn take_back_there(&mut self, there: Vec<f64>) {
-        self.there = there;
     }
 
     /// Sets the force [N] below which each row counts as without force, from the load [N] on each body beside its rows:

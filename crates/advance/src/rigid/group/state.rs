@@ -19,13 +19,17 @@ pub(crate) enum Work {
     Law(usize),
     /// Of the damping of free flight.
     Damping,
+    /// Of the friction of a contact that slips, by its row in the group.
+    Friction(u32),
+    /// Of surfaces that run.
+    Surfaces,
 }
 
 /// Event that ends a group's segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum SegmentEnd {
-    /// The force of a row falls to zero.
+    /// The force of a row falls to zero, or that of an anchor rises to its bound.
     Release(usize),
     /// A contact runs off its features, or a rail's piece ends.
     Change(usize),
@@ -35,6 +39,8 @@ pub(crate) enum SegmentEnd {
     Stop(ConnectorId),
     /// A force law changes branch.
     Switch,
+    /// The slip of a contact stops.
+    SlipStop(usize),
 }
 
 /// Bodies with a common segment.
@@ -45,6 +51,14 @@ pub(crate) struct Group {
     pub(super) bodies: Vec<BodyId>,
     /// The active rows: independent ones of the contacts, and every row of the connectors.
     pub(super) rows: Vec<ActiveRow>,
+    /// Rows that follow from others, each with the forces that it has as long as the group lasts.
+    pub(super) spares: Vec<ActiveRow>,
+    /// Rows that depend on others for now, and share their forces as the event found them: the row and its force [N].
+    pub(super) prescribed: Vec<(u32, f64)>,
+    /// True for each row that is one of a lock, next to which rows may be spare; empty where nothing sticks.
+    pub(super) locks: Vec<bool>,
+    /// What forces of spare rows add to those of the others [N]; empty where there is none.
+    pub(super) stress: Vec<f64>,
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
     pub(super) sides: Vec<[Option<u32>; 2]>,
     /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
@@ -148,6 +162,10 @@ impl Group {
         *self = Self {
             bodies: emptied(old.bodies),
             rows: emptied(old.rows),
+            spares: emptied(old.spares),
+            prescribed: emptied(old.prescribed),
+            locks: emptied(old.locks),
+            stress: emptied(old.stress),
             sides: emptied(old.sides),
             idle: emptied(old.idle),
             stops: emptied(old.stops),

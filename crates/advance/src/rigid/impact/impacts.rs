@@ -7,17 +7,18 @@ use crate::rigid::books::energy::{book_damping, interrupt};
 use crate::rigid::books::report::{ImpactReport, RowReport};
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::bounces::bounces_low;
+use crate::rigid::contacts::friction::slip_of;
 use crate::rigid::contacts::pairs::{Pairs, is_likely};
 use crate::rigid::contacts::rows::row_of;
 use crate::rigid::error::{AdvanceError, Between};
-use crate::rigid::region::records::rate_of;
+use crate::rigid::region::records::{rate_along, rate_of};
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::remedies::Remedy;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, Collision, Detector};
-use halfgap_contact::{CollisionRow, Impact, ImpactError};
+use halfgap_contact::{CollisionRow, FrictionRow, Impact, ImpactError};
 
 /// Manner in which an impact is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +70,19 @@ pub(crate) fn set_rows(
         CollisionRow { elasticity, was_active: was_active(connectors, pairs, record), ..row }
     });
     impact.set_rows(rows);
+    if !assembly.any_friction() {
+        return;
+    }
+    impact.set_restitution(assembly.settings().restitution);
+    for (index, record) in region.records().iter().enumerate() {
+        let Some((slip, surface)) = slip_of(assembly, connectors, record) else { continue };
+        let inertia = record.bodies().map(|body| assembly.inertia(body));
+        let friction = FrictionRow {
+            tangential_elasticity: surface.tangential_elasticity,
+            ..FrictionRow::new(slip.jacobian, inertia, slip.rate, surface.kinetic)
+        };
+        impact.set_friction(index, friction);
+    }
 }
 
 /// Gives the bodies of a region, which must be in flight, their velocities after a resolved impact, and writes the
@@ -128,6 +142,14 @@ fn write_report(
             report.add(RowReport { collision: *record, rate_before, rate_after, impulse }, energy);
         }
     }
+    for (record, slip) in region.records().iter().zip(impact.friction()) {
+        let Some((friction, impulse)) = slip.filter(|(_, impulse)| *impulse != 0.0) else { continue };
+        let running: f64 =
+            record.bodies().iter().map(|body| assembly.surfaces()[body.index()].velocity).sum();
+        let after = rate_along(assembly, record, &friction.jacobian, time);
+        report.add_friction(0.5 * impulse * (friction.rate + running + after), impulse * running);
+    }
+    report.set_friction_loss(impact.friction_loss());
     let struck = region.bodies().iter().zip(region.struck()).filter(|&(_, &is_struck)| is_struck);
     report.add_states(struck.map(|(&body, _)| (body, assembly.trajectory(body).state_at(time))));
 }

@@ -1,7 +1,7 @@
 //! The cause of an event.
 
-use crate::rigid::contacts::touch::Touch;
-use halfgap_collision::ConnectorId;
+use crate::rigid::contacts::touch::{Touch, sorted};
+use halfgap_collision::{BodyId, ConnectorId};
 
 /// Cause of an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub(crate) enum Cause {
     RunOff(Touch),
     /// A contact has lost its force: a small force found on it now may come from the motion of other bodies meanwhile.
     Released(Touch),
+    /// The slip of a contact has come to a stop; it went to the positive side or not.
+    Stopped(Touch, bool),
     /// Sunk contacts are put back, where contacts carry impulses only.
     Tick,
     /// The point of a rail goes over a smooth joint: velocities stopped by its connectors are rounding, not an impact.
@@ -34,5 +36,11 @@ impl Cause {
     /// The contact that has run off its features, if one has.
     pub(crate) fn run_off(self) -> Option<Touch> {
         if let Self::RunOff(touch) = self { Some(touch) } else { None }
+    }
+
+    /// The side to which the slip between two bodies went that has come to a stop, if one has: true for the positive one.
+    pub(crate) fn stopped(self, bodies: [BodyId; 2]) -> Option<bool> {
+        let Self::Stopped(touch, is_positive) = self else { return None };
+        (touch.bodies == sorted(bodies[0], bodies[1])).then_some(is_positive)
     }
 }

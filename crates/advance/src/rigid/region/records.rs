@@ -13,7 +13,11 @@ use halfgap_geometry::GapSample;
 /// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
 /// measured.
 pub(crate) fn rate_of(assembly: &Assembly, record: &Collision, time: Time) -> f64 {
-    let j = &record.motion.kinematics.jacobian;
+    rate_along(assembly, record, &record.motion.kinematics.jacobian, time)
+}
+
+/// Rate [m/s] of what has given coefficients by the velocities of a record's bodies at a time.
+pub(crate) fn rate_along(assembly: &Assembly, record: &Collision, j: &[f64; 6], time: Time) -> f64 {
     let sides = record.bodies();
     let of_side = |(side, body): (usize, BodyId)| {
         let Moving { velocity, angular_velocity, .. } = assembly.moving_at(body, time);

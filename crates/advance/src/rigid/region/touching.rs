@@ -29,6 +29,8 @@ pub(crate) struct Region {
     pub(super) is_accumulating: bool,
     /// True if steps have become so short that contacts that count as resting seem to take turns.
     pub(super) is_hasty: bool,
+    /// True if the forces of contacts that stick have come to a bound, and may be shared otherwise.
+    pub(super) is_strained: bool,
     pub(super) fresh: Vec<Collision>,
     /// Change of the velocities (x, y, angle) of each body by an impact [m/s, m/s, rad/s].
     pub(super) changes: Vec<[f64; 3]>,
@@ -65,6 +67,17 @@ impl Region {
     /// Notes whether contacts that count as resting seem to take turns.
     pub(crate) fn set_hasty(&mut self, is_hasty: bool) {
         self.is_hasty = is_hasty;
+    }
+
+    /// Notes whether the forces of contacts that stick have come to a bound, and may be shared otherwise.
+    pub(crate) fn set_strained(&mut self, is_strained: bool) {
+        self.is_strained = is_strained;
+    }
+
+    /// True if the forces of contacts that stick have come to a bound, and may be shared otherwise.
+    #[inline]
+    pub(crate) fn is_strained(&self) -> bool {
+        self.is_strained
     }
 
     /// Admits all excluded records again.
@@ -167,15 +180,35 @@ impl Region {
                 }
             }
         }
+        for (row, slip) in impact.rows().iter().zip(impact.friction()) {
+            let Some((friction, impulse)) = slip else { continue };
+            for (side, place) in row.bodies.iter().map(|&body| self.place(body)).enumerate() {
+                let Some(place) = place else { continue };
+                for (change, response) in changes[place].iter_mut().zip(&friction.response[3 * side..]) {
+                    *change += response * impulse;
+                }
+            }
+        }
         (self.changes, self.struck) = (changes, struck);
     }
 
     /// Row of a record in a problem of the region's bodies, in their order; `None` if neither of its bodies moves.
     pub(crate) fn row_of(&self, record: &Collision, offset: f64) -> Option<Row> {
-        let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(ProblemBody);
-        let sides = record.bodies().map(place);
-        let row = Row::between(sides, &record.motion.kinematics.jacobian, offset)?;
+        let row = self.row_along(record, &record.motion.kinematics.jacobian, offset)?;
         Some(if record.parties.bilateral { row.bilateral() } else { row })
+    }
+
+    /// A unilateral row between the bodies of a record, with other coefficients; `None` if neither of its bodies moves.
+    pub(crate) fn row_along(&self, record: &Collision, coefficients: &[f64; 6], offset: f64) -> Option<Row> {
+        let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(ProblemBody);
+        Row::between(record.bodies().map(place), coefficients, offset)
+    }
+
+    /// The row of a record with a force whose direction differs from the normal by a turn.
+    pub(crate) fn turned(&self, row: Row, record: &Collision, turn: &[f64; 6]) -> Row {
+        let direction = std::array::from_fn(|k| record.motion.kinematics.jacobian[k] + turn[k]);
+        let Some(along) = self.row_along(record, &direction, 0.0) else { return row };
+        row.with_force(along.primary.1, along.normal.map_or([0.0; 3], |(_, coefficients)| coefficients))
     }
 
     /// Fills a problem with the region's bodies, without rows.

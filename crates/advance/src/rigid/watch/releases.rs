@@ -4,6 +4,7 @@
 //! which none can happen. The segment is searched up to its end or to the event found otherwise, in one part, or in as
 //! many as the forces ask for.
 
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
@@ -13,6 +14,7 @@ use crate::rigid::shares::{HALVINGS, ROUNDED_FORCE, SEVERAL};
 use crate::rigid::watch::crossing::{Part, interpolated};
 use crate::rigid::watch::earliest::Earliest;
 use crate::rigid::watch::early_ends::{Watch, fill, find_first};
+use crate::rigid::watch::margins::{evaluate_margins_at, list_margins};
 use crate::rigid::watch::overdue::find_overdue;
 
 /// Pull of a contact that may be rounding as it becomes active, as a multiple of the force that counts as none.
@@ -32,9 +34,9 @@ const MOST_HALVINGS: usize = 10_000;
 
 /// Watch for contact forces that fall to zero.
 const RELEASES: Watch = Watch {
-    place: |dynamics, offset| dynamics.evaluate_at(offset),
-    place_for: |dynamics, _, offset| dynamics.evaluate_at(offset),
-    read: |dynamics, row| pressure(dynamics, row),
+    place: |dynamics, offset| evaluate_margins_at(dynamics, offset),
+    place_for: |dynamics, _, offset| evaluate_margins_at(dynamics, offset),
+    read: |dynamics, row| dynamics.stage.margins()[row],
     genuine: |_, _, offset| Some(offset),
     end: SegmentEnd::Release,
 };
@@ -61,7 +63,7 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
         }
         find_first(dynamics, &mut earliest, (&forces, part), &RELEASES);
         find_overdue(dynamics, &mut earliest, (&forces, part, &mut pulled), &RELEASES, |dynamics, row| {
-            PULL * dynamics.stage.least()[row]
+            PULL * dynamics.stage.least().get(row).copied().unwrap_or(0.0)
         });
         if part.to >= end {
             break;
@@ -79,32 +81,30 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
 /// singular: two corners that hold a body flush come together as it slides off.
 fn is_resolved_by(dynamics: &mut Dynamics<'_>, forces: &[[f64; NODES]], part: Part) -> bool {
     BETWEEN_NODES.into_iter().all(|fraction| {
-        dynamics.evaluate_at(part.from + fraction * part.span());
+        evaluate_margins_at(dynamics, part.from + fraction * part.span());
         forces.iter().enumerate().filter(|(_, values)| values[0].is_finite()).all(|(row, values)| {
             let size = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-            let allowed = dynamics.stage.least()[row].max(RESOLVED * size);
-            (pressure(dynamics, row) - interpolated(values, fraction)).abs() <= allowed
+            let least = dynamics.stage.least().get(row).copied().unwrap_or(0.0);
+            let allowed = least.max(RESOLVED * size);
+            (dynamics.stage.margins()[row] - interpolated(values, fraction)).abs() <= allowed
         })
     })
 }
 
 /// Release of a contact that pulls by more than rounding as the group is made.
-fn pull_at_start(dynamics: &Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
+fn pull_at_start(dynamics: &mut Dynamics<'_>) -> Option<(f64, SegmentEnd)> {
     let group = &*dynamics.group;
     let (start, made) = (group.start(), group.made());
     if dynamics.group.is_patient() || start != made {
         return None;
     }
-    let pulls =
-        |((row, force), least): ((&ActiveRow, &f64), &f64)| !row.bilateral && force + least < -PULL * least;
-    let row = dynamics
-        .group
-        .rows()
-        .iter()
-        .zip(dynamics.group.forces())
-        .zip(dynamics.stage.least())
-        .position(pulls)?;
-    Some((0.0, SegmentEnd::Release(row)))
+    let mut margins = dynamics.stage.lend_margins();
+    let (group, least) = (&*dynamics.group, dynamics.stage.least());
+    list_margins(group, group.forces(), least, &mut margins);
+    let pulls = |(margin, least): (&f64, &f64)| *margin < -PULL * least;
+    let row = margins.iter().zip(least).position(pulls);
+    dynamics.stage.take_back_margins(margins);
+    Some((0.0, SegmentEnd::Release(row?)))
 }
 
 /// Fraction of the step up to which no contact comes near to losing its force, as its stages tell; `None` if that
@@ -115,19 +115,53 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
     let group = &*dynamics.group;
     let (rows, forces, end_forces, force_laws) =
         (group.rows(), group.forces(), group.end_forces(), group.force_laws());
-    let contacts = rows.iter().enumerate().filter(|(_, row)| !row.bilateral);
     let is_known =
         dynamics.group.stepping() != Stepping::Stiff && dynamics.stage.force_ranges().len() == rows.len();
-    let part = |(index, _): (usize, &ActiveRow)| {
+    let range = |index: usize| {
         let (start, end) = (forces[index], end_forces[index]);
         let [least, largest] = if is_known { dynamics.stage.force_ranges()[index] } else { [start, end] };
-        let (least, largest) = (least.min(start).min(end), largest.max(start).max(end));
-        let is_firm = is_known && least > largest - least;
+        [least.min(start).min(end), largest.max(start).max(end)]
+    };
+    // A margin that starts at `start`, is no less than `least`, and varies by no more than `spread`.
+    let part = |start: f64, least: f64, spread: f64| {
+        let is_firm = is_known && least > spread;
         let is_slow = is_known && force_laws.is_empty() && start > 0.0;
-        let part = if is_slow { start / (SEVERAL * (largest - least)) } else { 0.0 };
+        let part = if is_slow { start / (SEVERAL * spread) } else { 0.0 };
         (!is_firm).then_some(part)
     };
-    contacts.filter_map(part).min_by(f64::total_cmp)
+    let of_contact = |(index, row): (usize, &ActiveRow)| {
+        if row.bilateral {
+            return None;
+        }
+        let [least, largest] = range(index);
+        part(forces[index], least, largest - least)
+    };
+    // The bound of each anchor is the sum of those of its contacts.
+    let of_anchor = |index: usize, row: &ActiveRow, bound: f64| {
+        let (force, [low, high]) = match forces.get(index) {
+            Some(&force) => (force, range(index)),
+            None => (row.load[0], [row.load[0]; 2]),
+        };
+        let mut margin = [bound - force.abs(), bound - low.abs().max(high.abs()), high - low];
+        for (contact, row) in rows.iter().enumerate() {
+            let Grip::Sticks { coefficient, anchor } = row.grip else { continue };
+            if anchor == u32::try_from(index).ok() {
+                let [least, largest] = range(contact);
+                margin[0] += coefficient * forces[contact];
+                margin[1] += coefficient * least;
+                margin[2] += coefficient * (largest - least);
+            }
+        }
+        part(margin[0], margin[1], margin[2])
+    };
+    let spare_anchors = &group.spares()[..group.spare_anchors()];
+    let anchors = rows.iter().chain(spare_anchors).enumerate();
+    let anchors = anchors.filter_map(|(index, row)| match row.grip {
+        Grip::Anchor { bound, .. } => of_anchor(index, row, bound),
+        _ => None,
+    });
+    let contacts = rows.iter().enumerate().filter_map(of_contact);
+    contacts.chain(anchors).min_by(f64::total_cmp)
 }
 
 /// Finds for each row the force [N] that counts as none: a fraction of the load on the less loaded of its bodies,
@@ -144,7 +178,8 @@ fn find_least_forces(dynamics: &mut Dynamics<'_>) {
 
 /// Samples the forces of all rows at the nodes of a part of the segment, raised by the force that counts as none.
 fn sample_forces(dynamics: &mut Dynamics<'_>, samples: &mut Vec<[f64; NODES]>, part: Part) {
-    fill(samples, dynamics.group.rows().len());
+    fill(samples, dynamics.group.rows().len() + dynamics.group.spare_anchors());
+    let mut margins = dynamics.stage.lend_margins();
     for index in 0..NODES {
         let offset = part.node(index);
         let is_inside = offset > 0.0 && offset < dynamics.group.span();
@@ -156,20 +191,12 @@ fn sample_forces(dynamics: &mut Dynamics<'_>, samples: &mut Vec<[f64; NODES]>, p
             0.0 => dynamics.group.forces(),
             _ => dynamics.group.end_forces(),
         };
-        let rows = dynamics.group.rows().iter().zip(forces).zip(dynamics.stage.least());
-        for (sample, ((row, force), least)) in samples.iter_mut().zip(rows) {
-            sample[index] = if row.bilateral { f64::INFINITY } else { force + least };
+        list_margins(dynamics.group, forces, dynamics.stage.least(), &mut margins);
+        for (sample, &margin) in samples.iter_mut().zip(&margins) {
+            sample[index] = margin;
         }
     }
-}
-
-/// Force [N] of a row, raised by the force that counts as none; infinite for a bilateral row.
-fn pressure(dynamics: &Dynamics<'_>, row: usize) -> f64 {
-    if dynamics.group.rows()[row].bilateral {
-        f64::INFINITY
-    } else {
-        dynamics.stage.forces()[row] + dynamics.stage.least()[row]
-    }
+    dynamics.stage.take_back_margins(margins);
 }
 
 #[cfg(test)]

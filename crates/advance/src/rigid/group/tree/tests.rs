@@ -2,6 +2,7 @@
 
 use super::build::MOST_BESIDE;
 use crate::rigid::bodies::trajectory::{FreeMotion, Trajectory};
+use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowSource};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::physics::Physics;
@@ -126,7 +127,16 @@ impl Scene {
         for row in 0..self.connectors[connector].row_count() {
             let source = RowSource::Connector(id, row);
             let (hint, leans) = (None, false);
-            let row = ActiveRow { source, bodies, bilateral: true, gap: 0.0, hint, leans };
+            let row = ActiveRow {
+                source,
+                bodies,
+                bilateral: true,
+                gap: 0.0,
+                hint,
+                leans,
+                grip: Grip::Smooth,
+                load: [0.0; 2],
+            };
             self.group.rows.push(row);
         }
     }
@@ -147,7 +157,7 @@ impl Scene {
         for (place, trajectory) in trajectories.iter().enumerate() {
             set_body_state(&mut group.state, count, place, &trajectory.state_at(Time::ZERO));
         }
-        let mechanism = Mechanism { trajectories, connectors, tolerances: &TOLERANCES };
+        let mechanism = Mechanism { trajectories, surfaces: &[], connectors, tolerances: &TOLERANCES };
         let remedies = &Remedies::new(RemedySet::NONE);
         let physics =
             Physics { mechanism, force_laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };

@@ -1,0 +1,94 @@
+//! The way on for contacts that slip and whose forces have no solution: velocities jump, without any collision.
+
+use crate::rigid::active_set::posing::{accelerate_region, pose_problem};
+use crate::rigid::active_set::settle::may_carry_force;
+use crate::rigid::active_set::settling::Settling;
+use crate::rigid::group::stage::Stage;
+use crate::rigid::region::touching::Region;
+use crate::rigid::region::view::View;
+use halfgap_collision::Collision;
+use halfgap_contact::Jump;
+
+/// Moment over which impulses are sought, as a share of the time scale of the scene [-]: forces give a velocity in it that
+/// solutions can tell from rounding, and no other.
+const MOMENT: f64 = 1e-7;
+
+/// What follows where the candidates have no forces.
+#[derive(Debug)]
+pub(crate) enum WayOn<'a> {
+    /// The velocities (x, y, angle) of the region's bodies change at once.
+    Jump(&'a [[f64; 3]]),
+    /// There are forces after all, without some of the candidates.
+    FewerCandidates,
+    /// None is known.
+    Nothing,
+}
+
+/// Finds the way on for a region whose candidates have no forces. Records must be up to date.
+pub(crate) fn find_way_on<'a>(
+    view: &View<'_>,
+    region: &Region,
+    settling: &'a mut Settling,
+    stage: &mut Stage,
+) -> WayOn<'a> {
+    let Some(impulses) = find_impulses(view, region, settling, stage) else {
+        return if drop_loose(settling) { WayOn::FewerCandidates } else { WayOn::Nothing };
+    };
+    settling.solution.force.clear();
+    settling.solution.force.extend(impulses);
+    let mut changes = std::mem::take(&mut settling.pushed);
+    changes.clear();
+    changes.resize(region.bodies().len(), [0.0; 3]);
+    settling.add_responses(region, &settling.candidates, |body| view.assembly.inertia(body), &mut changes);
+    settling.pushed = changes;
+    WayOn::Jump(&settling.pushed)
+}
+
+/// Notes the records that have no force in the last solution, in which there were forces. False if they were known.
+fn drop_loose(settling: &mut Settling) -> bool {
+    let Settling { candidates, solution, problem, loose, .. } = settling;
+    if solution.force.len() < candidates.len() {
+        return false;
+    }
+    let before = loose.len();
+    for (place, &record) in candidates.iter().enumerate() {
+        let is_loose = solution.force[place] == 0.0 && !problem.bilateral()[place];
+        if is_loose && !loose.contains(&record) {
+            loose.push(record);
+        }
+    }
+    loose.len() > before
+}
+
+/// The impulses of a jump, `None` if there is none: then the last solution has forces, up to a factor.
+fn find_impulses(
+    view: &View<'_>,
+    region: &Region,
+    settling: &mut Settling,
+    stage: &mut Stage,
+) -> Option<Vec<f64>> {
+    let assembly = view.assembly;
+    settling.candidates.clear();
+    let records = || region.records().iter().enumerate();
+    let takes_part = |record: &Collision| may_carry_force(assembly, record);
+    settling.candidates.extend(records().filter(|(_, record)| takes_part(record)).map(|(index, _)| index));
+    accelerate_region(assembly, view.connectors, region, settling, stage, assembly.now());
+    settling.jumps = true;
+    pose_problem(assembly, view.connectors, region, settling, stage);
+    settling.jumps = false;
+    let Settling { problem, solution, solver, candidates, slips, .. } = settling;
+    let normal = candidates.iter().map(|&index| region.records()[index].motion.normal_velocity);
+    let rates: Vec<f64> = normal.chain(slips.iter().map(|slip| slip.row.rate)).collect();
+    let steps = &assembly.settings().steps;
+    let moment = MOMENT * steps.length / steps.speed;
+    let mut find = |moment: f64| {
+        let found = Jump::find(problem, &rates, moment, solver, solution);
+        if found.is_err() {
+            solution.force.clear();
+        }
+        found.ok().filter(|jump| *jump == Jump::Impulses).map(|_| solution.force.clone())
+    };
+    let (whole, half) = (find(moment)?, find(0.5 * moment)?);
+    // What forces do in the moment is no part of the jump.
+    Some(half.iter().zip(whole).map(|(half, whole)| 2.0 * half - whole).collect())
+}

@@ -1,0 +1,107 @@
+//! The complementarity problem of an event's candidates.
+
+use crate::rigid::active_set::choosing::places_of;
+use crate::rigid::active_set::settling::Settling;
+use crate::rigid::active_set::slips::list_slips;
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::group::physics::physics;
+use crate::rigid::group::segment::LONGEST_STEP;
+use crate::rigid::group::stage::Stage;
+use crate::rigid::region::touching::Region;
+use crate::rigid::shares::ROUNDED;
+use crate::time::Time;
+use glam::DVec2;
+use halfgap_collision::{BodyAcceleration, Collision};
+
+/// Finds the accelerations of a region's bodies without the forces of rows.
+pub(super) fn accelerate_region(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    settling: &mut Settling,
+    stage: &mut Stage,
+    time: Time,
+) {
+    for &body in region.bodies() {
+        stage.place(body, assembly.trajectory(body).moving_at(time));
+    }
+    assembly.force_laws().list(region.bodies(), &mut settling.force_laws);
+    let physics = physics(assembly, connectors);
+    let of_region = (region.bodies(), settling.force_laws.as_slice());
+    stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
+}
+
+/// Poses the problem of the candidates: their normal rows, and behind them the slips of those that may stick.
+pub(super) fn pose_problem(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    settling: &mut Settling,
+    stage: &Stage,
+) {
+    list_slips(assembly, connectors, region, settling);
+    let Settling { problem, candidates, slips, jumps, slack, .. } = settling;
+    let least = f64::EPSILON * assembly.settings().tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
+    region.begin(problem, |body| assembly.inertia(body));
+    // Accelerations that move nothing in the longest time are rounding, as are those that remain of
+    // accelerations across the normal.
+    let sound = |record: &Collision, offset: f64| {
+        let least = least.max(ROUNDED * largest_acceleration(region, record, stage));
+        if offset.abs() > least { offset } else { 0.0 }
+    };
+    let mut turns = slips.iter().filter_map(|slip| Some((slip.place, slip.turn()?))).peekable();
+    for (place, &index) in candidates.iter().enumerate() {
+        let record = &region.records()[index];
+        let offset = sound(record, free_offset(region, record, stage));
+        let turn = turns.next_if(|(turned, _)| *turned == place);
+        let Some(row) = region.row_of(record, offset) else { continue };
+        let row = match turn {
+            Some((_, turn)) => region.turned(row, record, &turn),
+            None => row,
+        };
+        problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");
+    }
+    for slip in slips.iter_mut().filter(|slip| slip.side.is_none()) {
+        let record = &region.records()[candidates[slip.place]];
+        let [a, b] = accelerations_of_sides(region, record, stage.accelerations());
+        let offset = sound(record, slip.row.acceleration(&a, &b));
+        let Some(row) = region.row_along(record, &slip.row.jacobian, offset) else { continue };
+        let row = row.friction(slip.place, slip.bound(*jumps, *slack));
+        slip.number = Some(problem.add_row(&row).expect("a row of finite numbers beside that of its gap"));
+    }
+}
+
+/// Acceleration [m/s^2] of a record's gap without the forces of rows.
+fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    offset_under(region, record, stage.accelerations())
+}
+
+/// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
+pub(super) fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
+    let [a, b] = accelerations_of_sides(region, record, accelerations);
+    record.motion.kinematics.acceleration(&a, &b)
+}
+
+fn accelerations_of_sides(
+    region: &Region,
+    record: &Collision,
+    accelerations: &[[f64; 3]],
+) -> [BodyAcceleration; 2] {
+    record.bodies().map(|body| {
+        region
+            .place(body)
+            .map_or(BodyAcceleration::default(), |place| body_acceleration(accelerations[place]))
+    })
+}
+
+/// Largest acceleration [m/s^2] of the centre of a record's bodies without the forces of rows.
+fn largest_acceleration(region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    let linear = places_of(region, record)
+        .map(|place| body_acceleration(stage.accelerations()[place]).linear.length());
+    linear.fold(0.0, f64::max)
+}
+
+fn body_acceleration([x, y, angular]: [f64; 3]) -> BodyAcceleration {
+    BodyAcceleration { linear: DVec2::new(x, y), angular }
+}

@@ -1,0 +1,36 @@
+//! Margins of a group's rows: how much force each may lose before an event. A contact's is its force; an anchor's is what the
+//! contacts that it keeps may bear along their tangents, less its force.
+
+use crate::rigid::contacts::friction::Grip;
+use crate::rigid::group::dynamics::Dynamics;
+use crate::rigid::group::state::Group;
+
+/// Lists the margin [N] of each row with forces [N], raised by the force that counts as none, and then of each spare anchor; infinite for
+/// connectors that always act.
+pub(super) fn list_margins(group: &Group, forces: &[f64], least: &[f64], margins: &mut Vec<f64>) {
+    let rows = group.rows();
+    margins.clear();
+    margins.extend(rows.iter().zip(forces).zip(least).map(|((row, force), least)| match row.grip {
+        Grip::Anchor { bound, .. } => least + bound - force.abs(),
+        _ if row.bilateral => f64::INFINITY,
+        _ => force + least,
+    }));
+    margins.extend(group.spares().iter().map_while(|row| match row.grip {
+        Grip::Anchor { bound, .. } => Some(bound - row.load[0].abs()),
+        _ => None,
+    }));
+    for (row, force) in rows.iter().zip(forces) {
+        if let Grip::Sticks { coefficient, anchor: Some(anchor) } = row.grip {
+            margins[anchor as usize] += coefficient * force;
+        }
+    }
+}
+
+/// Evaluates the margins at an offset [s] of the segment, and leaves them in the stage.
+pub(super) fn evaluate_margins_at(dynamics: &mut Dynamics<'_>, offset: f64) {
+    dynamics.evaluate_at(offset);
+    let mut margins = dynamics.stage.lend_margins();
+    let (forces, least) = (dynamics.stage.forces(), dynamics.stage.least());
+    list_margins(dynamics.group, forces, least, &mut margins);
+    dynamics.stage.take_back_margins(margins);
+}
