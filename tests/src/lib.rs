@@ -72,7 +72,16 @@ pub fn check_at(scene: &Scene, tolerance: Option<f64>) -> CheckReport {
 /// If their folder cannot be read: the test fails.
 #[must_use]
 pub fn reference_scene_names() -> Vec<String> {
-    let entries = std::fs::read_dir(data("scenes")).expect("the reference scenes are there");
+    names_in("scenes")
+}
+
+/// Names of all scenes in a folder of the data, sorted.
+///
+/// # Panics
+/// If the folder cannot be read: the test fails.
+#[must_use]
+pub fn names_in(folder: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(data(folder)).expect("the scenes are there");
     let name = |path: PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let mut names: Vec<String> =
         entries.filter_map(|entry| name(entry.expect("a readable entry").path())).collect();

@@ -2,7 +2,7 @@
 
 use halfgap::scene::{RunData, Scene};
 use halfgap::{BodyId, CheckReport, Event, World, check};
-use halfgap_tests::data;
+use halfgap_tests::{data, names_in};
 
 /// The world of a scene that lacks but its format and its title.
 fn world_of(text: &str) -> World {
@@ -11,12 +11,8 @@ fn world_of(text: &str) -> World {
 
 /// Names of the scenes with known answers, but for that with rolling resistance, which events do not know yet.
 fn names() -> Vec<String> {
-    let files = std::fs::read_dir(data("friction")).expect("the scenes are there");
-    let stem =
-        |file: std::fs::DirEntry| file.path().file_stem().and_then(|stem| stem.to_str().map(str::to_owned));
-    let mut names: Vec<String> = files.filter_map(|file| stem(file.ok()?)).collect();
+    let mut names = names_in("friction");
     names.retain(|name| name != "x_disc_rolling_resistance");
-    names.sort();
     names
 }
 

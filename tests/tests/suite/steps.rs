@@ -6,21 +6,12 @@ use halfgap::{
     AdvanceBy, BodyId, BodySpec, BodyState, CheckReport, ContactForce, Event, Intervention, Surface, World,
     WorldBuilder, WorldSettings, check,
 };
-use halfgap_tests::data;
+use halfgap_tests::{data, names_in};
 use std::f64::consts::TAU;
 
 /// The world of a scene that lacks but its format and its title.
 fn world_of(text: &str) -> World {
     halfgap_tests::world_of(&format!("format = \"halfgap-scene-1\"\ntitle = \"steps\"\n{text}"))
-}
-
-fn names() -> Vec<String> {
-    let files = std::fs::read_dir(data("friction")).expect("the scenes are there");
-    let stem =
-        |file: std::fs::DirEntry| file.path().file_stem().and_then(|stem| stem.to_str().map(str::to_owned));
-    let mut names: Vec<String> = files.filter_map(|file| stem(file.ok()?)).collect();
-    names.sort();
-    names
 }
 
 fn scene(name: &str, step: f64) -> Scene {
@@ -77,7 +68,7 @@ fn bound(name: &str, step: f64) -> f64 {
 
 #[test]
 fn every_scene_with_friction_comes_near_its_answer_at_a_960th_of_a_second() {
-    let (names, step) = (names(), 1.0 / 960.0);
+    let (names, step) = (names_in("friction"), 1.0 / 960.0);
     assert!(names.len() >= 35, "{} scenes", names.len());
     for name in &names {
         let (error, bound) = (error(name, step), bound(name, step));

@@ -11,16 +11,13 @@ use crate::rigid::contacts::friction::{Grip, slip_of};
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
-use crate::rigid::shares::TINY;
+use crate::rigid::shares::{ROUNDED_FORCE, TINY};
 use crate::rigid::surface::PairSurface;
 use halfgap_collision::TangentRow;
 use halfgap_contact::Solution;
 
-/// Share [-] by which the bounds of the problem are less than those that count. More than what solutions are off, less than what
-/// forces are sensitive to.
-const WITHIN: f64 = 1e-9;
 /// Share [-] of the largest acceleration from which a slip accelerates: between what solutions are off, and what a contact at its
-/// bound does where bounds are [`WITHIN`] less.
+/// bound does where bounds are less by [`ROUNDED_FORCE`].
 const MOVES: f64 = 3e-11;
 
 /// The friction of a candidate.
@@ -40,7 +37,7 @@ pub(crate) struct Slip {
 impl Slip {
     /// Bound of the friction row, as a share of the normal force [-].
     pub(super) fn bound(&self, jumps: bool, slack: f64) -> f64 {
-        if jumps { self.surface.kinetic } else { (1.0 - slack.max(WITHIN)) * self.surface.sticking }
+        if jumps { self.surface.kinetic } else { (1.0 - slack.max(ROUNDED_FORCE)) * self.surface.sticking }
     }
 
     /// By what the direction of the force of the contact's row differs from its normal, if it slips.
