@@ -19,7 +19,6 @@ use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::search::searching::Searching;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::Sinking;
-use crate::rigid::surface::Surface;
 use crate::rigid::zeno::memory::Zeno;
 use crate::time::Time;
 use halfgap_collision::{BodyId, Moving};
@@ -53,13 +52,10 @@ pub(crate) struct Rooms {
 impl Rooms {
     /// Makes the rooms of the given parts, with all bodies in flight and nothing predicted.
     pub(crate) fn new(parts: RigidParts, settings: RigidSettings, start: Time) -> Self {
-        // Steps know smooth contacts and uniform accelerations only; bodies that go from steps to groups with more are not sound yet.
+        // Steps know contacts and uniform accelerations only; bodies that go from steps to groups with more are not sound yet.
         let is_plain = parts.connectors.is_empty()
             && parts.force_laws.is_empty()
-            && parts
-                .bodies
-                .iter()
-                .all(|part| !part.free_motion.is_damped() && part.surface == Surface::default());
+            && parts.bodies.iter().all(|part| !part.free_motion.is_damped());
         let region_steps = settings.region_steps.filter(|_| is_plain);
         let settings = RigidSettings { region_steps, ..settings };
         let RigidParts { bodies, connectors, force_laws, excluded } = parts;

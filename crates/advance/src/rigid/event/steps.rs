@@ -21,7 +21,7 @@ use crate::rigid::stepping::ending::end_step;
 use crate::rigid::stepping::step::step_on;
 use crate::rigid::zeno::budget::{charge_event, spend_all};
 use crate::rigid::zeno::memory::Zeno;
-use crate::rigid::zeno::stepped::Pressed;
+use crate::rigid::zeno::stepped::{Dragged, Pressed};
 use halfgap_collision::{BodyId, Tolerances};
 
 /// Handles the end of the step that a body leads.
@@ -98,7 +98,14 @@ fn expect_forces(zeno: &mut Zeno, ended: &[RowForce], steps: RegionSteps) {
     zeno.stepped_mut().expect(ended.iter().filter_map(|row| {
         let impulse = 0.5 * steps.span * row.force;
         let touch = Touch::new(row.bodies, row.features?);
-        (impulse > 0.0).then_some(Pressed { touch, approach: 0.0, impulse, stopped_by: impulse })
+        let friction = row.friction.map(|friction| (0.5 * steps.span * friction.force, friction));
+        let dragged = friction.map(|(impulse, friction)| Dragged {
+            impulse,
+            stopped_by: impulse,
+            side: if friction.sticks { 0.0 } else { -impulse.signum() },
+        });
+        let dragged = dragged.unwrap_or_default();
+        (impulse > 0.0).then_some(Pressed { touch, approach: 0.0, impulse, stopped_by: impulse, dragged })
     }));
 }
 

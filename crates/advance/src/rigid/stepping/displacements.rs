@@ -22,7 +22,7 @@ pub(super) fn find_shifts(stepper: &mut Stepper, steps: RegionSteps) {
     for row in rows.iter_mut() {
         (row.kept, row.impulse, row.offset) = (row.impulse, 0.0, row.gap);
     }
-    sweep(rows, shifts, (MINOR * MINOR * steps.slack, MINOR), |_| true);
+    sweep((rows, &mut []), shifts, (MINOR * MINOR * steps.slack, MINOR), |_| true);
     let farthest = shifts.iter().map(|[x, y, _]| libm::hypot(*x, *y)).fold(0.0, f64::max);
     if farthest > -LARGE * deepest {
         shifts.fill([0.0; 3]);
@@ -48,6 +48,6 @@ pub(crate) fn find_way_to_target(
     for row in rows.iter_mut() {
         row.offset = row.gap;
     }
-    sweep(rows, shifts, (residual, MINOR), |_| true);
+    sweep((rows, &mut []), shifts, (residual, MINOR), |_| true);
     rows.iter().map(|row| row.gap).fold(0.0, f64::min)
 }

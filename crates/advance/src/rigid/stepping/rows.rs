@@ -48,6 +48,8 @@ pub(crate) struct StepRow {
     pub(crate) impulse: f64,
     /// The rate must be at least the opposite of this.
     pub(crate) offset: f64,
+    /// Place of its slip, if it has friction.
+    pub(crate) slip: Option<u32>,
 }
 
 impl StepRow {
@@ -60,18 +62,29 @@ impl StepRow {
     /// Rate [m/s] of its gap at given velocities.
     #[inline]
     pub(crate) fn rate(&self, velocities: &[[f64; 3]]) -> f64 {
-        let [[x, y, turn], [u, v, spin]] = self.places.map(|place| velocities[place]);
-        let j = &self.jacobian;
-        j[0] * x + j[1] * y + j[2] * turn + j[3] * u + j[4] * v + j[5] * spin
+        rate_along(self.places, &self.jacobian, velocities)
     }
 
     /// Adds what an impulse changes to the velocities.
     #[inline]
     pub(crate) fn push(&self, velocities: &mut [[f64; 3]], impulse: f64) {
-        for (side, place) in self.places.into_iter().enumerate() {
-            for (k, velocity) in velocities[place].iter_mut().enumerate() {
-                *velocity += self.response[3 * side + k] * impulse;
-            }
+        push_along(self.places, &self.response, velocities, impulse);
+    }
+}
+
+/// Rate [m/s] along a Jacobian of the bodies at two places.
+#[inline]
+pub(super) fn rate_along(places: [usize; 2], j: &[f64; 6], velocities: &[[f64; 3]]) -> f64 {
+    let [[x, y, turn], [u, v, spin]] = places.map(|place| velocities[place]);
+    j[0] * x + j[1] * y + j[2] * turn + j[3] * u + j[4] * v + j[5] * spin
+}
+
+/// Adds a multiple of a response to the velocities of the bodies at two places.
+#[inline]
+pub(super) fn push_along(places: [usize; 2], response: &[f64; 6], velocities: &mut [[f64; 3]], impulse: f64) {
+    for (side, place) in places.into_iter().enumerate() {
+        for (k, velocity) in velocities[place].iter_mut().enumerate() {
+            *velocity += response[3 * side + k] * impulse;
         }
     }
 }
@@ -116,6 +129,7 @@ pub(crate) fn list_rows(
             before: 0.0,
             direction: 0.0,
             offset: 0.0,
+            slip: None,
         })
     }));
 }

@@ -11,6 +11,7 @@ use crate::rigid::settings::RegionSteps;
 use crate::rigid::shares::MINOR;
 use crate::rigid::stepping::displacements::find_shifts;
 use crate::rigid::stepping::rows::{StepRow, bend_anew, list_rows};
+use crate::rigid::stepping::slips::{StepSlip, list_slips};
 use crate::rigid::stepping::spans::{next_span, straight_span};
 use crate::rigid::stepping::sweeps::sweep;
 use crate::rigid::zeno::budget::note_step;
@@ -23,6 +24,7 @@ use halfgap_collision::{BodyId, BodyState};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stepper {
     pub(super) rows: Vec<StepRow>,
+    pub(super) slips: Vec<StepSlip>,
     /// Velocities (x, y, angle) of the bodies of the region, and of what cannot move.
     velocities: Vec<[f64; 3]>,
     /// Velocities in the middle of the step.
@@ -96,7 +98,9 @@ pub(crate) fn step_on(
     steps: RegionSteps,
 ) {
     let proposed = zeno.stepped().next_span(region.bodies().len()).unwrap_or(steps.span);
-    list_rows(assembly, region, zeno.stepped().ended(), MINOR * steps.slack, &mut stepper.rows);
+    let ended = zeno.stepped().ended();
+    list_rows(assembly, region, ended, MINOR * steps.slack, &mut stepper.rows);
+    list_slips((assembly, connectors), region, ended, &mut stepper.rows, &mut stepper.slips);
     read_motions(assembly, region, stepper);
     let fast = stop_closing(stepper, steps);
     books.note_impacts_in_steps(fast);
@@ -139,7 +143,7 @@ fn residual(steps: RegionSteps) -> f64 {
 /// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
 /// have brought. Returns the number of contacts that have come fast since the step before.
 fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> u64 {
-    let Stepper { rows, velocities, shifts, .. } = stepper;
+    let Stepper { rows, slips, velocities, shifts, .. } = stepper;
     let (mut any_closes, mut fast, mut brought) = (false, 0, 0.0);
     for row in rows.iter_mut().filter(|row| row.touches) {
         let rate = row.rate(velocities);
@@ -158,21 +162,30 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> u64 {
     }
     let before = &mut *shifts;
     before.clone_from(velocities);
-    sweep(rows, velocities, (residual(steps), 0.0), |row| row.touches);
+    slips.iter_mut().for_each(|slip| slip.impulse = slip.dragged.stopped_by);
+    sweep((rows, slips), velocities, (residual(steps), 0.0), |row| row.touches);
     // The energy that impulses give is their work at the mean of the rates before and after.
-    let given = |rows: &[StepRow], velocities: &[[f64; 3]]| -> f64 {
-        rows.iter().map(|row| 0.5 * row.impulse * (row.rate(before) + row.rate(velocities))).sum()
+    let given = |rows: &[StepRow], slips: &[StepSlip], velocities: &[[f64; 3]]| -> f64 {
+        let works = rows.iter().map(|row| {
+            let slip = row.slip.map_or(0.0, |slip| {
+                let slip = &slips[slip as usize];
+                slip.impulse * (slip.speed(row.places, before) + slip.speed(row.places, velocities))
+            });
+            0.5 * (row.impulse * (row.rate(before) + row.rate(velocities)) + slip)
+        });
+        works.sum()
     };
-    if fast > 0 && given(rows, velocities) > brought {
+    if fast > 0 && given(rows, slips, velocities) > brought {
         velocities.clone_from(before);
         for row in rows.iter_mut() {
             row.offset = 0.0;
         }
-        sweep(rows, velocities, (residual(steps), 0.0), |row| row.touches);
+        sweep((rows, slips), velocities, (residual(steps), 0.0), |row| row.touches);
     }
     for row in rows.iter_mut() {
         row.stopped_by = row.impulse;
     }
+    slips.iter_mut().for_each(|slip| slip.dragged.stopped_by = slip.impulse);
     fast
 }
 
@@ -191,7 +204,7 @@ fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
 
 /// Finds the velocities in the middle of a step of a length `span` [s], at which no gap falls below its target.
 fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
-    let Stepper { rows, velocities, middle, accelerations, .. } = stepper;
+    let Stepper { rows, slips, velocities, middle, accelerations, .. } = stepper;
     let half = 0.5 * span;
     middle.clear();
     middle.extend(
@@ -204,8 +217,12 @@ fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
         row.approach = (-row.rate(velocities)).max(0.0);
         row.offset = row.gap.max(0.0) / span + half * row.bend_within(span);
         row.impulse = row.pressed.unwrap_or(row.stopped_by);
+        if let Some(slip) = row.slip {
+            let StepSlip { dragged, impulse, .. } = &mut slips[slip as usize];
+            *impulse = if row.pressed.is_some() { dragged.impulse } else { dragged.stopped_by };
+        }
     }
-    sweep(rows, middle, (residual, 0.0), |_| true);
+    sweep((rows, slips), middle, (residual, 0.0), |_| true);
 }
 
 /// Lets the parts of a region coast that go on by steps; the other bodies get their velocities.
@@ -218,7 +235,8 @@ fn set_off(
     list_parts(region, stepper, residual(steps));
     let now = assembly.now();
     let mut parts = std::mem::take(&mut stepper.parts);
-    let Stepper { rows, velocities, middle, shifts, accelerations, charges, places, leaving, .. } = stepper;
+    let Stepper { rows, slips, velocities, middle, shifts, accelerations, charges, places, leaving, .. } =
+        stepper;
     let mut rest = places.as_slice();
     while let Some(&first) = rest.first() {
         let root = parts.root(first);
@@ -247,9 +265,10 @@ fn set_off(
         for &place in part {
             stepped.add(region.bodies()[place], accelerations[place]);
         }
-        for &StepRow { touch, approach, impulse, stopped_by, places, .. } in rows.iter() {
+        for &StepRow { touch, approach, impulse, stopped_by, places, slip, .. } in rows.iter() {
             if impulse > 0.0 && parts.root(places[0].min(places[1])) == root {
-                stepped.press(Pressed { touch, approach, impulse, stopped_by });
+                let dragged = slip.map(|slip| slips[slip as usize].as_dragged()).unwrap_or_default();
+                stepped.press(Pressed { touch, approach, impulse, stopped_by, dragged });
             }
         }
         stepped.sort_pressed();
@@ -267,9 +286,9 @@ fn set_off(
 }
 
 /// Lists the places of a region part by part, each part by its bodies, and what happens in each part. Contacts that begin or end to
-/// press at no more than a residual [m/s] change nothing.
+/// press, or to slip, at no more than a residual [m/s] change nothing.
 fn list_parts(region: &Region, stepper: &mut Stepper, residual: f64) {
-    let Stepper { rows, middle, parts, places, charges, .. } = stepper;
+    let Stepper { rows, slips, middle, parts, places, charges, .. } = stepper;
     let count = region.bodies().len();
     charges.clear();
     charges.resize(count, Charge::default());
@@ -281,6 +300,9 @@ fn list_parts(region: &Region, stepper: &mut Stepper, residual: f64) {
         if row.pressed.is_some() != (row.impulse > 0.0) && speed > residual {
             *changes = true;
             *fastest = fastest.max(speed);
+        }
+        if let Some(slip) = row.slip {
+            *changes |= slips[slip as usize].turns(row.places, middle, residual) && row.impulse > 0.0;
         }
     }
     places.clear();

@@ -8,6 +8,7 @@
 
 use crate::rigid::shares::MAJOR;
 use crate::rigid::stepping::rows::StepRow;
+use crate::rigid::stepping::slips::StepSlip;
 
 /// Number of sweeps there and back after which a residual may be [`MAJOR`] times as large: what closes still is stopped in the
 /// next step. With 50 the piles overlap as much and take half as long again.
@@ -16,20 +17,24 @@ const FINE_SWEEPS: usize = 15;
 const MOST_SWEEPS: usize = 150;
 
 /// Changes velocities so that the rows which act have a rate of at least the opposite of their offset, with impulses that only
-/// push. They begin with the impulses that they have; those of other rows become zero. Rows that are soft, by a part of the mean of
-/// their compliances, share what they lack if they contradict each other.
+/// push, and the slips of those rows stop as far as friction goes. They begin with the impulses that they have; those of other rows
+/// become zero. Rows that are soft, by a part of the mean of their compliances, share what they lack if they contradict each other.
 pub(crate) fn sweep(
-    rows: &mut [StepRow],
+    (rows, slips): (&mut [StepRow], &mut [StepSlip]),
     velocities: &mut [[f64; 3]],
     (residual, softness): (f64, f64),
     acts: impl Fn(&StepRow) -> bool,
 ) {
     for row in rows.iter_mut() {
         (row.acts, row.direction) = (acts(row), 0.0);
+        let mut slip = slip_of(row, slips);
+        slip.iter_mut().for_each(|slip| slip.direction = 0.0);
         if row.acts {
             row.push(velocities, row.impulse);
+            slip.into_iter().for_each(|slip| slip.push(row.places, velocities, slip.impulse));
         } else {
             row.impulse = 0.0;
+            slip.into_iter().for_each(|slip| slip.impulse = 0.0);
         }
     }
     let softness = softness * rows.iter().map(|row| row.compliance).sum::<f64>() / rows.len().max(1) as f64;
@@ -38,15 +43,19 @@ pub(crate) fn sweep(
         for row in rows.iter_mut() {
             row.before = row.impulse;
         }
-        let most = rows.iter_mut().map(|row| visit(row, velocities, softness)).fold(0.0, f64::max);
+        for slip in slips.iter_mut() {
+            slip.before = slip.impulse;
+        }
+        let most = rows.iter_mut().map(|row| visit(row, slips, velocities, softness)).fold(0.0, f64::max);
         if most <= residual || round >= FINE_SWEEPS && most <= MAJOR * residual {
             return;
         }
         for row in rows.iter_mut().rev() {
-            visit(row, velocities, softness);
+            visit(row, slips, velocities, softness);
         }
         let squares = rows.iter().map(|row| (row.impulse - row.before) * (row.impulse - row.before));
-        let square = squares.sum::<f64>();
+        let of_slips = slips.iter().map(|slip| (slip.impulse - slip.before) * (slip.impulse - slip.before));
+        let square = squares.sum::<f64>() + of_slips.sum::<f64>();
         let share = if square < last { square / last } else { 0.0 };
         last = square;
         for row in rows.iter_mut() {
@@ -54,16 +63,28 @@ pub(crate) fn sweep(
             row.impulse += on;
             row.push(velocities, on);
             row.direction = if share > 0.0 { on + swept } else { 0.0 };
+            if let Some(slip) = slip_of(row, slips) {
+                let (on, swept) = (share * slip.direction, slip.impulse - slip.before);
+                slip.impulse += on;
+                slip.push(row.places, velocities, on);
+                slip.direction = if share > 0.0 { on + swept } else { 0.0 };
+            }
         }
     }
     // The last sweep leaves no impulse that pulls.
     for row in rows.iter_mut() {
-        visit(row, velocities, softness);
+        visit(row, slips, velocities, softness);
     }
 }
 
-/// Stops a row that closes, or lets it go if it would pull; returns the change of its rate [m/s].
-fn visit(row: &mut StepRow, velocities: &mut [[f64; 3]], softness: f64) -> f64 {
+/// The slip of a row, if it takes part.
+#[inline]
+fn slip_of<'a>(row: &StepRow, slips: &'a mut [StepSlip]) -> Option<&'a mut StepSlip> {
+    slips.get_mut(row.slip? as usize)
+}
+
+/// Stops a row that closes, or lets it go if it would pull, and its slip; returns the greater change of a rate [m/s].
+fn visit(row: &mut StepRow, slips: &mut [StepSlip], velocities: &mut [[f64; 3]], softness: f64) -> f64 {
     if !row.acts {
         return 0.0;
     }
@@ -72,7 +93,8 @@ fn visit(row: &mut StepRow, velocities: &mut [[f64; 3]], softness: f64) -> f64 {
     let change = wanted.max(0.0) - row.impulse;
     row.push(velocities, change);
     row.impulse += change;
-    change.abs() * row.compliance
+    let changed = change.abs() * row.compliance;
+    slip_of(row, slips).map_or(changed, |slip| changed.max(slip.visit(row.places, velocities, row.impulse)))
 }
 
 #[cfg(test)]
@@ -108,6 +130,7 @@ mod tests {
                 direction: 0.0,
                 impulse: 0.0,
                 offset: 0.0,
+                slip: None,
             }
         };
         (0..count).map(row).collect()
@@ -119,7 +142,7 @@ mod tests {
         let mut rows = column(count);
         let mut velocities = vec![[0.0, -1.0, 0.0]; count];
         velocities.push([0.0; 3]);
-        sweep(&mut rows, &mut velocities, (1e-12, 0.0), |_| true);
+        sweep((&mut rows, &mut []), &mut velocities, (1e-12, 0.0), |_| true);
         let fastest = velocities.iter().map(|v| v[1].abs()).fold(0.0, f64::max);
         assert!(fastest < 1e-4, "{fastest} m/s");
         for (index, row) in rows.iter().enumerate() {
@@ -129,7 +152,7 @@ mod tests {
         // From these impulses one sweep tells that nothing changes.
         let mut again = vec![[0.0, -1.0, 0.0]; count];
         again.push([0.0; 3]);
-        sweep(&mut rows, &mut again, (1e-3, 0.0), |_| true);
+        sweep((&mut rows, &mut []), &mut again, (1e-3, 0.0), |_| true);
         assert!(again.iter().all(|v| v[1].abs() < 1e-4), "{again:?}");
     }
 
@@ -137,7 +160,7 @@ mod tests {
     fn rows_that_open_get_no_impulse_and_none_pulls() {
         let mut rows = column(2);
         let mut velocities = vec![[0.0, -1.0, 0.0], [0.0, 3.0, 0.0], [0.0; 3]];
-        sweep(&mut rows, &mut velocities, (1e-12, 0.0), |_| true);
+        sweep((&mut rows, &mut []), &mut velocities, (1e-12, 0.0), |_| true);
         assert_eq!(velocities, [[0.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0; 3]]);
         assert_eq!(rows.iter().map(|row| row.impulse).collect::<Vec<_>>(), [1.0, 0.0]);
     }

@@ -32,6 +32,20 @@ pub(crate) struct Pressed {
     pub(crate) impulse: f64,
     /// Impulse [N s] that stopped it before the step.
     pub(crate) stopped_by: f64,
+    /// What friction did.
+    pub(crate) dragged: Dragged,
+}
+
+/// Friction of a contact in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Dragged {
+    /// Impulse [N s] in the step.
+    pub(crate) impulse: f64,
+    /// Impulse [N s] as it was stopped before the step.
+    pub(crate) stopped_by: f64,
+    /// Side to which it slips, 1 or -1; 0 if it sticks.
+    pub(crate) side: f64,
 }
 
 impl Stepped {
