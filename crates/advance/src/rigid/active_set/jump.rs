@@ -3,6 +3,7 @@
 use crate::rigid::active_set::posing::{accelerate_region, pose_problem};
 use crate::rigid::active_set::settle::may_carry_force;
 use crate::rigid::active_set::settling::Settling;
+use crate::rigid::active_set::slips::Slip;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
@@ -31,17 +32,30 @@ pub(crate) fn find_way_on<'a>(
     settling: &'a mut Settling,
     stage: &mut Stage,
 ) -> WayOn<'a> {
-    let Some(impulses) = find_impulses(view, region, settling, stage) else {
-        return if drop_loose(settling) { WayOn::FewerCandidates } else { WayOn::Nothing };
-    };
-    settling.solution.force.clear();
-    settling.solution.force.extend(impulses);
+    let Some(impulses) = find_impulses(view, region, settling, stage) else { return WayOn::Nothing };
+    let of_forces = std::mem::replace(&mut settling.solution.force, impulses);
     let mut changes = std::mem::take(&mut settling.pushed);
     changes.clear();
     changes.resize(region.bodies().len(), [0.0; 3]);
     settling.add_responses(region, &settling.candidates, |body| view.assembly.inertia(body), &mut changes);
     settling.pushed = changes;
-    WayOn::Jump(&settling.pushed)
+    let rest = view.assembly.rest_speed();
+    if settling.slips.iter().any(|slip| change_of(region, slip, &settling.pushed).abs() > rest) {
+        return WayOn::Jump(&settling.pushed);
+    }
+    settling.solution.force = of_forces;
+    if drop_loose(settling) { WayOn::FewerCandidates } else { WayOn::Nothing }
+}
+
+/// Change of the slip speed [m/s] of a candidate by those of the velocities of the region's bodies.
+fn change_of(region: &Region, slip: &Slip, changes: &[[f64; 3]]) -> f64 {
+    let bodies = region.records()[slip.record].bodies();
+    let sides = bodies.into_iter().zip(slip.row.jacobian.chunks_exact(3));
+    let of_sides = sides.filter_map(|(body, j)| {
+        let change = changes[region.place(body)?];
+        Some(j.iter().zip(change).map(|(j, change)| j * change).sum::<f64>())
+    });
+    of_sides.sum()
 }
 
 /// Notes the records that have no force in the last solution, in which there were forces. False if they were known.
@@ -60,7 +74,8 @@ fn drop_loose(settling: &mut Settling) -> bool {
     loose.len() > before
 }
 
-/// The impulses of a jump, `None` if there is none: then the last solution has forces, up to a factor.
+/// The impulses of a jump, zero up to rounding if there is none: then the last solution has forces, up to a factor. `None` if no impulses
+/// were found.
 fn find_impulses(
     view: &View<'_>,
     region: &Region,
@@ -83,12 +98,9 @@ fn find_impulses(
     let moment = MOMENT * steps.length / steps.speed;
     let mut find = |moment: f64| {
         let found = Jump::find(problem, &rates, moment, solver, solution);
-        if found.is_err() {
-            solution.force.clear();
-        }
-        found.ok().filter(|jump| *jump == Jump::Impulses).map(|_| solution.force.clone())
+        found.ok().map(|_| solution.force.clone())
     };
-    let (whole, half) = (find(moment)?, find(0.5 * moment)?);
+    let (half, whole) = (find(0.5 * moment)?, find(moment)?);
     // What forces do in the moment is no part of the jump.
     Some(half.iter().zip(whole).map(|(half, whole)| 2.0 * half - whole).collect())
 }
