@@ -7,6 +7,8 @@
 //! Mason, "Two-dimensional rigid-body collisions with friction", J. Appl. Mech. 59, 1992; W. J. Stronge, "Rigid body
 //! collisions with friction", Proc. R. Soc. A 431, 1990.
 
+use super::super::NOISE;
+
 /// What elasticity means where there is friction. Without friction all three are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -81,7 +83,11 @@ impl Contact {
         let second = if sticking.abs() <= mu { sticking } else { -mu * nt.signum() };
         let [p1, p2] = [first, second].map(|k| nn + k * nt);
         let slides_on = p1 > 0.0 && -v_n <= p1 * stop;
-        let normal = if slides_on {
+        // What connectors leave only one way to move comes to rest as its slip stops, and friction holds it there.
+        let is_held = second == sticking && p2 <= NOISE * nn;
+        let normal = if is_held {
+            stop
+        } else if slides_on {
             let compression = -v_n / p1;
             let end = (1.0 + e) * compression;
             if end <= stop {
@@ -214,6 +220,27 @@ mod tests {
             assert!(blow.friction_loss > -1e-15 && lost > 0.0);
             if blow.normal * mu <= blow.tangential.abs() + 1e-12 {
                 assert!((lost - by_normal - blow.friction_loss).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn what_one_pin_holds_is_held_by_friction_for_good() {
+        // A body that turns about a pin: along its one way both rates go together, up to rounding.
+        for (a, b) in [(0.3, 1.1), (-0.7, 0.9), (1e-3, 0.5)] {
+            for rounding in [-1e-15, 0.0, 1e-15] {
+                let turn = -1.0 / a;
+                let contact = Contact {
+                    coupling: [a * a * (1.0 + rounding), a * b, b * b],
+                    rates: [a * turn, b * turn],
+                    friction: 0.9,
+                    elasticity: 0.5,
+                    tangential_elasticity: 0.0,
+                    restitution: Restitution::Energetic,
+                };
+                let blow = contact.resolve();
+                let turned = a * blow.normal + b * blow.tangential;
+                assert!((turned + turn).abs() < 1e-9 * turn.abs(), "{a}, {b}, {rounding}: {blow:?}");
             }
         }
     }
