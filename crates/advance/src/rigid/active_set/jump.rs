@@ -100,7 +100,7 @@ fn find_impulses(
         let found = Jump::find(problem, &rates, moment, solver, solution);
         found.ok().map(|_| solution.force.clone())
     };
-    let (half, whole) = (find(0.5 * moment)?, find(moment)?);
-    // What forces do in the moment is no part of the jump.
+    // What forces do in the moment is no part of the jump. What opens in the shorter moment has no force.
+    let (whole, half) = (find(moment)?, find(0.5 * moment)?);
     Some(half.iter().zip(whole).map(|(half, whole)| 2.0 * half - whole).collect())
 }

@@ -11,14 +11,17 @@ use crate::rigid::contacts::friction::{Grip, slip_of};
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
-use crate::rigid::shares::{ROUNDED_FORCE, TINY};
+use crate::rigid::shares::TINY;
 use crate::rigid::surface::PairSurface;
 use halfgap_collision::TangentRow;
 use halfgap_contact::Solution;
 
+/// Share [-] by which the bounds of a problem are less than those that count. A contact that is this near its bound and slips by mistake
+/// is slowed down, and stops at once.
+const NARROWED: f64 = 1e-7;
 /// Share [-] of the largest acceleration from which a slip accelerates: between what solutions are off, and what a contact at its
-/// bound does where bounds are less by [`ROUNDED_FORCE`].
-const MOVES: f64 = 3e-11;
+/// bound does where bounds are less by [`NARROWED`].
+const MOVES: f64 = 3e-13;
 
 /// The friction of a candidate.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +40,7 @@ pub(crate) struct Slip {
 impl Slip {
     /// Bound of the friction row, as a share of the normal force [-].
     pub(super) fn bound(&self, jumps: bool, slack: f64) -> f64 {
-        if jumps { self.surface.kinetic } else { (1.0 - slack.max(ROUNDED_FORCE)) * self.surface.sticking }
+        if jumps { self.surface.kinetic } else { (1.0 - slack.max(NARROWED)) * self.surface.sticking }
     }
 
     /// By what the direction of the force of the contact's row differs from its normal, if it slips.
@@ -53,11 +56,12 @@ impl Slip {
 
     /// Side to which the contact begins to slip in a solution whose accelerations count from `least` [m/s^2] on; `None` if it
     /// sticks.
-    fn gives_way(&self, solution: &Solution, least: f64) -> Option<f64> {
+    fn gives_way(&self, solution: &Solution, slack: f64, least: f64) -> Option<f64> {
         let number = self.number?;
         // Contacts that contradict each other by rounding have no forces at all.
         let (along, force) = (solution.acceleration.get(number)?, solution.force.get(number)?);
-        let is_at_bound = force.abs() >= (1.0 - TINY) * self.surface.sticking * solution.force[self.place];
+        let bound = self.bound(false, slack) * solution.force[self.place];
+        let is_at_bound = force.abs() >= (1.0 - TINY) * bound;
         (is_at_bound && along.abs() > least).then(|| along.signum())
     }
 }
@@ -98,12 +102,12 @@ fn speed_of_stopped(assembly: &Assembly, connectors: &Connectors, region: &Regio
 /// bounds now here, now there. So the bounds of the problem are a little less than those that count, and who cannot stick
 /// accelerates. A contact whose slip has just come to a stop does not go on to the same side.
 pub(super) fn give_way(region: &Region, settling: &mut Settling) -> bool {
-    let Settling { slips, given_way, solution, problem, .. } = settling;
+    let Settling { slips, given_way, solution, problem, slack, .. } = settling;
     let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
     let mut is_new = false;
     for slip in slips.iter().filter(|slip| slip.side.is_none()) {
         let record = slip.record;
-        let Some(side) = slip.gives_way(solution, MOVES * largest) else { continue };
+        let Some(side) = slip.gives_way(solution, *slack, MOVES * largest) else { continue };
         let stopped = region.cause().stopped(region.records()[record].bodies());
         if stopped != Some(side > 0.0) {
             given_way.push((record, side));
@@ -115,9 +119,9 @@ pub(super) fn give_way(region: &Region, settling: &mut Settling) -> bool {
 
 /// True if no contact that may stick gives way.
 pub(super) fn all_stick(settling: &Settling) -> bool {
-    let Settling { slips, solution, problem, .. } = settling;
+    let Settling { slips, solution, problem, slack, .. } = settling;
     let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    slips.iter().all(|slip| slip.gives_way(solution, MOVES * largest).is_none())
+    slips.iter().all(|slip| slip.gives_way(solution, *slack, MOVES * largest).is_none())
 }
 
 /// What friction does at the row of a candidate's record, and its force [N] along the tangent.

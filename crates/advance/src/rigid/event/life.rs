@@ -97,7 +97,7 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
         if dynamics.leave_singular_tree() {
             dynamics.set_out();
         }
-        if dynamics.prescribe_dependent() {
+        if dynamics.prescribe_if_dependent() {
             dynamics.set_out();
         }
         dynamics.note_stress();

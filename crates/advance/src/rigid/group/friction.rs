@@ -133,17 +133,16 @@ impl Dynamics<'_> {
         }
     }
 
-    /// Prescribes the forces of rows that depend on others at the group's start: they are not unique, and where
-    /// contacts slip motions depend on them. True if there are any.
-    pub(crate) fn prescribe_dependent(&mut self) -> bool {
+    /// Lets the forces of all rows be those that the event found, and what changes them, if some depend on others at the group's start:
+    /// then forces are not unique, and where contacts slip motions depend on them. True if that is so.
+    pub(crate) fn prescribe_if_dependent(&mut self) -> bool {
         if !self.group.is_rough() || self.group.rows.len() < 2 {
             return false;
         }
         let Group { rows, active, prescribed, .. } = &mut *self.group;
-        let rows = rows.iter().enumerate();
-        let dependent = rows.filter(|&(index, _)| active.is_dependent(index));
-        prescribed
-            .extend(dependent.filter_map(|(index, row)| Some((u32::try_from(index).ok()?, row.load[0]))));
+        if (0..rows.len()).any(|index| active.is_dependent(index)) {
+            prescribed.extend(rows.iter().zip(0..).map(|(row, index)| (index, row.load[0])));
+        }
         !prescribed.is_empty()
     }
 

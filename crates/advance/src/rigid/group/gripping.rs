@@ -71,12 +71,11 @@ impl Group {
         let mut locks = vec![false; self.rows.len()];
         // Rows between two sets of locked bodies may lock these, too.
         loop {
-            let mut between: Vec<([usize; 2], bool, usize)> = Vec::new();
+            let mut between: Vec<([usize; 2], Bears, usize)> = Vec::new();
             for (index, row) in self.rows.iter().enumerate() {
                 let [a, b] = row.bodies.map(|body| sets.root(place(&self.bodies, body)));
-                if a != b && row.can_lock() {
-                    let is_normal = matches!(row.source, RowSource::Contact(_));
-                    between.push(([a.min(b), a.max(b)], is_normal, index));
+                if let Some(bears) = row.bears().filter(|_| a != b) {
+                    between.push(([a.min(b), a.max(b)], bears, index));
                 }
             }
             between.sort_unstable();
@@ -103,7 +102,7 @@ impl Group {
             .zip(&locks)
             .map(|(row, &locks)| {
                 let [a, b] = row.bodies.map(|body| sets.root(place(&self.bodies, body)));
-                row.can_lock() && !locks && a == b
+                row.bears().is_some_and(|bears| bears != Bears::Anything) && !locks && a == b
             })
             .collect();
         // An anchor bears what the contacts may that it keeps, spare ones, too.
@@ -143,10 +142,26 @@ impl Group {
     }
 }
 
+/// What forces a row of a lock may bear. Where there are more rows than lock, those lock that bear more, and the forces of the others stay
+/// as they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Bears {
+    /// Any, as a joint.
+    Anything,
+    /// Those that press.
+    Pressure,
+    /// Those up to a bound.
+    Friction,
+}
+
 impl ActiveRow {
-    /// True if the row can be one of a lock: a contact that does not slip, or an anchor.
-    fn can_lock(&self) -> bool {
-        !matches!(self.source, RowSource::Connector(..)) && self.grip.slip_share().is_none()
+    /// What the row bears, if it can be one of a lock: a joint, a contact that does not slip, or an anchor.
+    fn bears(&self) -> Option<Bears> {
+        match self.source {
+            RowSource::Connector(..) => self.is_joint().then_some(Bears::Anything),
+            RowSource::Contact(_) => self.grip.slip_share().is_none().then_some(Bears::Pressure),
+            RowSource::Anchor(_) => Some(Bears::Friction),
+        }
     }
 }
 
@@ -165,8 +180,9 @@ impl Mechanism<'_> {
             let movings = row.bodies.map(&moving_of);
             let side = usize::from(is_second(row.bodies[1]));
             let position = movings[side].pose.position;
-            let reach = self.trajectory_reach(row.bodies[side]);
-            // The coefficients of a motion of the set about one point, in units of the size of one body.
+            let solid = row.bodies.iter().filter(|body| !body.is_world());
+            let reach = solid.map(|&body| self.trajectory_reach(body)).fold(f64::INFINITY, f64::min);
+            // The coefficients of a motion of the set about one point, in units of the size of the lesser body.
             let (center, reach) = *center.get_or_insert((position, reach));
             let j = self.measure_between(row, [&movings[0], &movings[1]]).kinematics.jacobian;
             let (force, arm) = (DVec2::new(j[3 * side], j[3 * side + 1]), position - center);
