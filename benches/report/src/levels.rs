@@ -13,8 +13,8 @@ const ENGINES: [&str; 3] = ["halfgap", "rapier", "box2d"];
 type Bar = [Option<(f64, char)>; 5];
 
 /// An independent suite's measurement of the field, on a core of its own machine. Siconos event-driven,
-/// MuJoCo with RK4 in reduced coordinates, Chipmunk.
-const BARS: [(&str, Bar); 10] = [
+/// MuJoCo with RK4 in reduced coordinates, Chipmunk; N where the engine is not named.
+const BARS: [(&str, Bar); 15] = [
     ("ball_bounce", bar([0.057, 0.105, 0.105, 0.105, 0.123], b"CSSSS")),
     ("two_discs_e1", bar([0.028; 5], b"SSSSS")),
     ("newtons_cradle", bar([0.32, 4.4, 70.0, 0.0, 0.0], b"CCC  ")),
@@ -25,6 +25,11 @@ const BARS: [(&str, Bar); 10] = [
     ("falling_chain", bar([1.1, 4.4, 4.4, 18.0, 72.0], b"MMMMM")),
     ("disc_in_bowl", bar([0.24, 0.24, 0.38, 0.47, 0.97], b"SSSSS")),
     ("disc_off_hill", bar([0.23, 0.54, 1.2, 1.2, 1.2], b"CMSSS")),
+    ("block_slide_friction", bar([0.33, 1.4, 32.0, 0.0, 0.0], b"NNN  ")),
+    ("disc_slips_then_rolls", bar([0.0, 0.77, 0.77, 3.3, 67.0], b" NNNN")),
+    ("block_rocks", bar([0.16, 0.61, 30.0, 0.0, 0.0], b"NNN  ")),
+    ("stack_10", bar([0.9, 0.0, 0.0, 0.0, 0.0], b"N    ")),
+    ("pyramid_20", bar([18.0, 73.0, 0.0, 0.0, 0.0], b"NN   ")),
 ];
 
 /// Times with the letters of their engines; a blank is a level that none reaches.

@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 use halfgap::BodyState;
-use halfgap::geometry::{EdgeSpec, PathSpec};
+use halfgap::geometry::{self, EdgeSpec, PathSpec};
 
 /// A scene with its known answer.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// The connectors.
     pub connectors: Vec<Connector>,
+    /// The springs.
+    pub springs: Vec<Spring>,
     /// Acceleration of all movable bodies [m/s^2].
     pub gravity: DVec2,
     /// False if bodies pass through each other.
@@ -47,10 +49,32 @@ pub struct Body {
     /// Share of the closing speed with which it leaves an impact. All bodies of a scene that collide have the same, for
     /// engines differ in how they combine two.
     pub elasticity: f64,
-    /// Coulomb coefficient of friction; all bodies of a scene have the same.
-    pub friction: f64,
+    /// Its friction. All bodies of a scene that touch have the same coefficients, for engines differ in how they combine two.
+    pub surface: Surface,
     /// Angular velocity at which a fixed body turns [rad/s].
     pub spin: f64,
+}
+
+/// Friction of a body's surface, by Coulomb's law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Coefficient where it slips [-].
+    pub friction: f64,
+    /// Coefficient up to which it sticks [-], not below the other.
+    pub static_friction: f64,
+    /// Speed at which it runs along the outline [m/s], counter-clockwise positive: a belt.
+    pub speed: f64,
+}
+
+impl Surface {
+    /// Without friction.
+    pub const SMOOTH: Self = Self::rough(0.0);
+
+    /// With one coefficient [-].
+    #[must_use]
+    pub const fn rough(friction: f64) -> Self {
+        Self { friction, static_friction: friction, speed: 0.0 }
+    }
 }
 
 /// Mass and moment of inertia.
@@ -85,6 +109,8 @@ pub enum Shape {
         /// Size along y [m].
         height: f64,
     },
+    /// A convex polygon about its centroid: corners, counter-clockwise [m].
+    Polygon(Vec<DVec2>),
     /// All points within a radius of a convex polygon.
     Rounded {
         /// Corners of the polygon, counter-clockwise [m].
@@ -130,6 +156,28 @@ pub enum Connector {
     },
 }
 
+/// A spring that pulls two points together with stiffness (length - rest length).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// One end.
+    pub a: End,
+    /// The other end.
+    pub b: End,
+    /// Length without force [m].
+    pub rest_length: f64,
+    /// Force per length [N/m].
+    pub stiffness: f64,
+}
+
+impl Spring {
+    /// Force on its first end [N], with the places of its ends [m].
+    #[must_use]
+    pub fn force(&self, a: DVec2, b: DVec2) -> DVec2 {
+        let offset = b - a;
+        self.stiffness * (offset - self.rest_length * offset.normalize_or_zero())
+    }
+}
+
 /// Known states at one time.
 #[derive(Clone, Debug)]
 pub struct Check {
@@ -148,6 +196,7 @@ impl Scene {
             about: about.to_owned(),
             bodies,
             connectors: Vec::new(),
+            springs: Vec::new(),
             gravity: DVec2::ZERO,
             collisions: true,
             duration: 0.0,
@@ -188,11 +237,11 @@ impl Scene {
         let has_arcs = |path: &PathSpec| path.edges.iter().any(is_arc);
         self.bodies.iter().any(|body| match &body.shape {
             Shape::Outline(paths) => paths.iter().any(has_arcs),
-            Shape::Disc { .. } | Shape::Block { .. } | Shape::Rounded { .. } => false,
+            Shape::Disc { .. } | Shape::Block { .. } | Shape::Polygon(_) | Shape::Rounded { .. } => false,
         })
     }
 
-    /// Kinetic energy and that of gravity [J].
+    /// Kinetic energy and that of gravity and springs [J].
     #[must_use]
     pub fn energy(&self, states: &[BodyState]) -> f64 {
         let energy = |body: &Body, state: &BodyState| {
@@ -202,7 +251,12 @@ impl Scene {
                 0.5 * kinetic - inertia.mass * self.gravity.dot(state.position)
             })
         };
-        self.bodies.iter().zip(states).map(|(body, state)| energy(body, state)).sum()
+        let stretched = |spring: &Spring| {
+            let length = (self.place(&spring.b, states) - self.place(&spring.a, states)).length();
+            0.5 * spring.stiffness * (length - spring.rest_length).powi(2)
+        };
+        let of_bodies: f64 = self.bodies.iter().zip(states).map(|(body, state)| energy(body, state)).sum();
+        of_bodies + self.springs.iter().map(stretched).sum::<f64>()
     }
 
     /// Error of states at a check [m]: the largest error of a position, and of an angle times the radius
@@ -244,12 +298,36 @@ impl Scene {
     }
 }
 
+impl Shape {
+    /// The shape as geometry has it, with the same origin.
+    ///
+    /// # Errors
+    /// It is none: a size is not positive, or lines cross.
+    pub fn geometry(&self) -> Result<geometry::Shape, geometry::ShapeError> {
+        match self {
+            Self::Disc { radius } => geometry::Shape::disc(*radius),
+            Self::Block { width, height } => geometry::Shape::block(*width, *height),
+            Self::Polygon(corners) => geometry::Shape::from_paths(&[PathSpec::polygon(corners)]),
+            Self::Rounded { corners, radius } => geometry::Shape::from_paths(&[rounded(corners, *radius)]),
+            Self::Outline(paths) => geometry::Shape::from_paths(paths),
+        }
+    }
+}
+
 impl Body {
     /// A fixed body with the origin of its shape at a place [m].
     #[must_use]
     pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
         let start = BodyState { position, ..BodyState::default() };
-        Self { name: name.to_owned(), shape, inertia: None, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
+        Self {
+            name: name.to_owned(),
+            shape,
+            inertia: None,
+            start,
+            elasticity: 1.0,
+            surface: Surface::SMOOTH,
+            spin: 0.0,
+        }
     }
 
     /// A disc of uniform density and a given mass [kg] that moves without turning.
@@ -258,7 +336,15 @@ impl Body {
         let start = BodyState { position, velocity, ..BodyState::default() };
         let inertia = Some(Inertia { mass, moment: 0.5 * mass * radius * radius });
         let shape = Shape::Disc { radius };
-        Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
+        Self {
+            name: name.to_owned(),
+            shape,
+            inertia,
+            start,
+            elasticity: 1.0,
+            surface: Surface::SMOOTH,
+            spin: 0.0,
+        }
     }
 
     /// A rectangle of uniform density and a given mass [kg].
@@ -266,7 +352,15 @@ impl Body {
     pub fn block(name: &str, size: DVec2, mass: f64, start: BodyState) -> Self {
         let inertia = Some(Inertia { mass, moment: mass * size.length_squared() / 12.0 });
         let shape = Shape::Block { width: size.x, height: size.y };
-        Self { name: name.to_owned(), shape, inertia, start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
+        Self {
+            name: name.to_owned(),
+            shape,
+            inertia,
+            start,
+            elasticity: 1.0,
+            surface: Surface::SMOOTH,
+            spin: 0.0,
+        }
     }
 
     /// A convex polygon about its centroid, grown by a radius [m], of uniform density [kg/m^2].
@@ -281,13 +375,21 @@ impl Body {
         let inertia = Inertia { mass, moment: mass * of_shape.moment_per_mass };
         let shape = Shape::Rounded { corners: corners.to_vec(), radius };
         let name = name.to_owned();
-        Self { name, shape, inertia: Some(inertia), start, elasticity: 1.0, friction: 0.0, spin: 0.0 }
+        Self {
+            name,
+            shape,
+            inertia: Some(inertia),
+            start,
+            elasticity: 1.0,
+            surface: Surface::SMOOTH,
+            spin: 0.0,
+        }
     }
 
     /// The body with friction.
     #[must_use]
     pub fn with_friction(self, friction: f64) -> Self {
-        Self { friction, ..self }
+        Self { surface: Surface::rough(friction), ..self }
     }
 
     /// The body with another elasticity.

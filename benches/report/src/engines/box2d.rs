@@ -1,8 +1,9 @@
 //! Box2D 3.2 by its bindings `boxdd`, built with positions in double precision; all else in it is single.
 
+use super::belt::Belt;
 use super::segments::corners;
 use super::{Engine, EngineError, Session};
-use crate::scene::{Body, Connector, End, Scene, Shape};
+use crate::scene::{Body, Connector, End, Scene, Shape, Spring};
 use boxdd::prelude::{
     BodyBuilder, BodyId, BodyType, ChainDef, ConstraintTuning, Filter, Foundation, FoundationConfig,
     JointBase, MassData, Position, PrismaticJointDef, RevoluteJointDef, ShapeDef, SurfaceMaterial, Vec2,
@@ -22,6 +23,9 @@ const CONTACT_SPRING: (f32, f32) = (30.0, 10.0);
 const JOINT_SHARE: f64 = 0.25;
 /// Stock: damping ratio of joints.
 const JOINT_DAMPING: f32 = 2.0;
+/// Slip [m/s] on a belt that counts as none: tenfold the rounding of half a metre per second. A tenth of it takes loads
+/// at rest for loads that slip, tenfold is found out late.
+const LEAST_SLIP: f64 = 1e-6;
 
 /// Box2D with its settings.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +71,8 @@ struct Running {
     steps: u64,
     /// Stiffness of joints, if not stock.
     joints: Option<ConstraintTuning>,
+    springs: Vec<Spring>,
+    belt: Option<Belt>,
 }
 
 impl Running {
@@ -99,6 +105,8 @@ impl Running {
             substeps: settings.substeps,
             steps: 0,
             joints: joints.transpose().map_err(refused)?,
+            springs: scene.springs.clone(),
+            belt: Belt::of(scene, LEAST_SLIP),
         };
         for body in &scene.bodies {
             running.add_body(foundation, body, scene.collisions, settings.segments)?;
@@ -147,7 +155,10 @@ impl Running {
     fn add_shape(&mut self, id: BodyId, body: &Body, collides: bool, segments: usize) -> Result<(), String> {
         let told = |error: boxdd::prelude::Error| error.to_string();
         let material = SurfaceMaterial::default();
-        let material = material.with_friction(body.friction as f32).map_err(told)?;
+        let material = material.with_friction(body.surface.friction as f32).map_err(told)?;
+        // Its tangent is the outline walked clockwise.
+        let speed = -body.surface.speed * self.scale;
+        let material = material.with_tangent_speed(speed as f32).map_err(told)?;
         let material = material.with_restitution(body.elasticity as f32).map_err(told)?;
         let filter = if collides { Filter::default() } else { Filter { mask_bits: 0, ..Filter::default() } };
         let definition = ShapeDef::builder().material(material).density(1.0).filter(filter);
@@ -162,6 +173,10 @@ impl Running {
                 let half = |size: &f64| (0.5 * size * scale) as f32;
                 let polygon = shapes::box_polygon(half(width), half(height)).map_err(told)?;
                 target.create_polygon(&definition, &polygon).map_err(told)?;
+            }
+            Shape::Polygon(corners) => {
+                let corners = corners.iter().map(|&corner| vector(corner * scale));
+                target.create_polygon_from_points(&definition, corners, 0.0).map_err(told)?;
             }
             Shape::Rounded { corners, radius } => {
                 let corners = corners.iter().map(|&corner| vector(corner * scale));
@@ -215,15 +230,63 @@ impl Running {
     fn id(&self, end: &End) -> BodyId {
         end.body.map_or(self.ground, |body| self.bodies[body])
     }
+
+    fn step(&mut self) -> Result<(), boxdd::prelude::Error> {
+        self.pull_springs()?;
+        self.tell_friction()?;
+        drop(self.world.step(self.step as f32, self.substeps)?);
+        self.steps += 1;
+        Ok(())
+    }
+
+    /// Applies the forces of springs, which hold for a step: those at the mean of the times at which its substeps start. Its
+    /// own springs damp.
+    fn pull_springs(&mut self) -> Result<(), boxdd::prelude::Error> {
+        let scale = self.scale;
+        let ahead = 0.5 * self.step * (1.0 - 1.0 / f64::from(self.substeps));
+        for index in 0..self.springs.len() {
+            let spring = self.springs[index];
+            let (a, b) = (self.place(&spring.a, ahead)?, self.place(&spring.b, ahead)?);
+            let force = spring.force(a, b) * scale;
+            for (end, place, force) in [(spring.a, a, force), (spring.b, b, -force)] {
+                if let Some(body) = end.body {
+                    let place = Position::new(place.x * scale, place.y * scale);
+                    self.world.body(self.bodies[body])?.apply_force(vector(force), place, true)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// World position [m] of an end of a spring on a body that goes on for a time [s] as it does now, without turning.
+    fn place(&mut self, end: &End, ahead: f64) -> Result<DVec2, boxdd::prelude::Error> {
+        let Some(body) = end.body else { return Ok(end.point) };
+        let state = state(&mut self.world, self.bodies[body], self.scale)?;
+        Ok(state.position + ahead * state.velocity + DVec2::from_angle(state.angle).rotate(end.point))
+    }
+
+    /// Sets the coefficient of friction on a belt and its load.
+    fn tell_friction(&mut self) -> Result<(), boxdd::prelude::Error> {
+        let Some(belt) = &mut self.belt else { return Ok(()) };
+        let [floor, load] = [belt.floor, belt.load].map(|body| self.bodies[body]);
+        let velocity = self.world.body(load)?.linear_velocity()?;
+        let velocity = DVec2::new(f64::from(velocity.x), f64::from(velocity.y)) / self.scale;
+        if let Some(coefficient) = belt.change(velocity) {
+            for id in [floor, load] {
+                for shape in self.world.body(id)?.shapes()? {
+                    self.world.shape(shape)?.set_friction(coefficient as f32)?;
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Session for Running {
     fn advance(&mut self, time: f64) -> Result<(), EngineError> {
         let target = (time / self.step).round() as u64;
         while self.steps < target {
-            let stepped = self.world.step(self.step as f32, self.substeps);
-            drop(stepped.map_err(|error| EngineError::Stopped(error.to_string()))?);
-            self.steps += 1;
+            self.step().map_err(|error| EngineError::Stopped(error.to_string()))?;
         }
         Ok(())
     }

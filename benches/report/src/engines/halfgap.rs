@@ -1,8 +1,9 @@
 //! halfgap, with its one knob.
 
 use super::{Engine, EngineError, Session};
-use crate::scene::{Body, Connector, End, Scene, Shape, rounded};
+use crate::scene::{Body, Connector, End, Scene};
 use glam::DVec2;
+use halfgap::force::Spring;
 use halfgap::{
     AdvanceBy, Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath,
     SlotFrame, Surface, UniformMotion, World, WorldBuilder, WorldSettings, geometry,
@@ -72,6 +73,11 @@ pub fn build(scene: &Scene, tolerance: f64, strategy: AdvanceBy) -> Result<World
         let connector = halfgap::Connector::new(connector_kind(connector)?, 0.0).map_err(refused)?;
         builder.add_connector(ConnectorSpec::new(connector));
     }
+    for (index, spring) in scene.springs.iter().enumerate() {
+        let ends = [anchor(&spring.a), anchor(&spring.b)];
+        let law = Spring::new(format!("spring {index}"), ends, spring.rest_length, spring.stiffness);
+        builder.add_force(Arc::new(law));
+    }
     builder.build().map_err(refused)
 }
 
@@ -80,13 +86,9 @@ fn refused(error: impl std::fmt::Display) -> EngineError {
 }
 
 fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
-    let shape = match &body.shape {
-        Shape::Disc { radius } => geometry::Shape::disc(*radius)?,
-        Shape::Block { width, height } => geometry::Shape::block(*width, *height)?,
-        Shape::Rounded { corners, radius } => geometry::Shape::from_paths(&[rounded(corners, *radius)])?,
-        Shape::Outline(paths) => geometry::Shape::from_paths(paths)?,
-    };
+    let shape = body.shape.geometry()?;
     let inertia = body.inertia.map(|inertia| Inertia { mass: inertia.mass, moment: inertia.moment });
+    let crate::scene::Surface { friction, static_friction, speed } = body.surface;
     Ok(BodySpec {
         name: body.name.clone(),
         shape,
@@ -94,7 +96,7 @@ fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
         inertia,
         state: body.start,
         elasticity: body.elasticity,
-        surface: Surface { friction: body.friction, static_friction: body.friction, ..Surface::default() },
+        surface: Surface { friction, static_friction, velocity: speed, ..Surface::default() },
         motion: (body.spin != 0.0)
             .then_some(UniformMotion { angular_velocity: body.spin, ..UniformMotion::default() }),
     })

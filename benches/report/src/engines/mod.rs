@@ -1,5 +1,6 @@
 //! The engines that are measured, behind one trait: build a scene, advance it, read states.
 
+mod belt;
 pub mod box2d;
 pub mod halfgap;
 pub mod rapier;
@@ -72,4 +73,66 @@ pub trait Session {
 
     /// The deepest overlap [m] that the engine itself sees at the present time, or has seen since the start.
     fn penetration(&mut self) -> f64;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::box2d::Box2d;
+    use super::halfgap::Halfgap;
+    use super::rapier::{Joints, Rapier, Tuning};
+    use super::*;
+    use crate::measure::{Repeats, measure};
+    use crate::scenes;
+
+    /// The peers at a step of about a millisecond, set for accuracy.
+    fn peers(scene: &Scene) -> [Box<dyn Engine>; 2] {
+        let (steps_per_check, segments) = ((1000.0 * scene.check_grid) as u32, 512);
+        let tuning = Tuning::Accurate;
+        [
+            Box::new(Rapier { steps_per_check, iterations: 4, segments, tuning, joints: Joints::Impulse }),
+            Box::new(Box2d { steps_per_check, substeps: 4, segments, scale: 100.0 }),
+        ]
+    }
+
+    fn error(engine: &dyn Engine, scene: &Scene) -> f64 {
+        let once = Repeats { most: 0, ..Repeats::QUICK };
+        let run = measure(engine, scene, &once).expect("it runs");
+        run.error.expect("its answer is known")
+    }
+
+    #[test]
+    fn every_engine_is_given_the_friction_the_springs_and_the_belt_of_a_scene() {
+        let names = [
+            "block_slide_friction",
+            "disc_slips_then_rolls",
+            "block_rocks",
+            "belt_stick_slip",
+            "friction_drive",
+        ];
+        for scene in scenes::wanted(|name| names.contains(&name)) {
+            let ours = error(&Halfgap { tolerance: 1e-6, step: None }, &scene);
+            assert!(ours < 1e-7, "{}: {ours}", scene.name);
+            for peer in peers(&scene) {
+                let theirs = error(&*peer, &scene);
+                assert!(theirs < 5e-3, "{}: {} {theirs}", scene.name, peer.name());
+            }
+        }
+    }
+
+    #[test]
+    fn peers_have_no_friction_in_the_part_of_an_impact_that_parts() {
+        let scenes = scenes::wanted(|name| name == "disc_bounces_sliding");
+        let [floor, disc] = [0, 1].map(|body| &scenes[0].bodies[body]);
+        let (friction, speed) = (floor.surface.friction, disc.start.velocity.x);
+        // Between the first impact, at the speed of a fall of 1 m, and the second.
+        let closing = (2.0 * scenes[0].gravity.length()).sqrt();
+        for peer in peers(&scenes[0]) {
+            let mut session = peer.start(&scenes[0]).expect("it has all that the scene needs");
+            session.advance(1.0).expect("it runs");
+            let mut states = Vec::new();
+            session.write_states(&mut states);
+            let share = (speed - states[1].velocity.x) / (friction * closing);
+            assert!((share - 1.0).abs() < 0.02, "{}: {share} of the impulse that stops it", peer.name());
+        }
+    }
 }

@@ -1,14 +1,18 @@
 //! Rapier in double precision, at fixed steps.
 
+use super::belt::{Belt, top_velocity};
 use super::segments::corners;
 use super::{Engine, EngineError, Session};
-use crate::scene::{Body, Connector, End, Scene, Shape};
+use crate::scene::{Body, Connector, End, Scene, Shape, Spring};
 use glam::DVec2;
 use halfgap::BodyState;
 use rapier2d_f64::prelude::*;
 
 /// The step [s] for which Rapier's lengths and frequencies were chosen.
 const STOCK_STEP: f64 = 1.0 / 60.0;
+/// Slip [m/s] on a belt that counts as none; from a tenth of it on, runs at some steps take loads at rest for loads that
+/// slip.
+const LEAST_SLIP: f64 = 1e-8;
 
 /// Changes to the settings of `Rapier` besides step and iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,15 +92,18 @@ struct Running {
     handles: Vec<RigidBodyHandle>,
     ground: RigidBodyHandle,
     steps: u64,
+    springs: Vec<Spring>,
+    belt: Option<Belt>,
 }
 
 impl Running {
     fn new(settings: &Rapier, scene: &Scene) -> Result<Self, EngineError> {
+        let step = scene.check_grid / f64::from(settings.steps_per_check);
         let mut bodies = RigidBodySet::new();
         let ground = bodies.insert(RigidBodyBuilder::fixed());
         let mut running = Self {
             pipeline: PhysicsPipeline::new(),
-            parameters: parameters(settings, scene.check_grid / f64::from(settings.steps_per_check)),
+            parameters: parameters(settings, step),
             gravity: vector(scene.gravity),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
@@ -110,6 +117,8 @@ impl Running {
             handles: Vec::new(),
             ground,
             steps: 0,
+            springs: scene.springs.clone(),
+            belt: Belt::of(scene, LEAST_SLIP),
         };
         for body in &scene.bodies {
             running.add_body(body, scene.collisions, settings.segments)?;
@@ -122,8 +131,10 @@ impl Running {
 
     fn add_body(&mut self, body: &Body, collides: bool, segments: usize) -> Result<(), EngineError> {
         let start = &body.start;
+        // Its surfaces do not run: a belt is a floor that moves along, as long as it is straight and long.
+        let along = top_velocity(&body.surface, start.angle);
         let builder = match body.inertia {
-            None if body.spin != 0.0 => RigidBodyBuilder::kinematic_velocity_based(),
+            None if body.spin != 0.0 || along != DVec2::ZERO => RigidBodyBuilder::kinematic_velocity_based(),
             None => RigidBodyBuilder::fixed(),
             Some(inertia) => RigidBodyBuilder::dynamic().additional_mass_properties(MassProperties::new(
                 Vector::ZERO,
@@ -135,7 +146,7 @@ impl Running {
             builder
                 .translation(vector(start.position))
                 .rotation(start.angle)
-                .linvel(vector(start.velocity))
+                .linvel(vector(start.velocity + along))
                 .angvel(start.angular_velocity + body.spin)
                 .can_sleep(false)
                 .ccd_enabled(true),
@@ -143,9 +154,13 @@ impl Running {
         for shape in colliders(&body.shape, segments)? {
             let mut collider = shape
                 .density(0.0)
-                .friction(body.friction)
+                .friction(body.surface.friction)
                 .restitution(body.elasticity)
                 .restitution_combine_rule(CoefficientCombineRule::Min);
+            if body.surface.static_friction > body.surface.friction {
+                // It takes notice of coefficients that change only where contacts might be modified.
+                collider = collider.active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+            }
             if !collides {
                 collider = collider.collision_groups(InteractionGroups::none());
             }
@@ -198,6 +213,8 @@ impl Running {
     }
 
     fn step(&mut self) {
+        self.pull_springs();
+        self.tell_friction();
         self.pipeline.step(
             self.gravity,
             &self.parameters,
@@ -214,6 +231,41 @@ impl Running {
             &(),
         );
         self.steps += 1;
+    }
+
+    /// Applies the forces of springs, which hold for a step: those at the mean of the times at which its iterations start,
+    /// which are substeps. Its own springs damp.
+    fn pull_springs(&mut self) {
+        let ahead = 0.5 * self.parameters.dt * (1.0 - 1.0 / self.parameters.num_solver_iterations as f64);
+        for spring in &self.springs {
+            let place = |end: &End| {
+                let Some(body) = end.body else { return end.point };
+                let body = &self.bodies[self.handles[body]];
+                let place = body.position() * vector(end.point) + body.linvel() * ahead;
+                DVec2::new(place.x, place.y)
+            };
+            let (a, b) = (place(&spring.a), place(&spring.b));
+            let force = spring.force(a, b);
+            for (end, place, force) in [(spring.a, a, force), (spring.b, b, -force)] {
+                if let Some(body) = end.body {
+                    let body = &mut self.bodies[self.handles[body]];
+                    body.reset_forces(true);
+                    body.add_force_at_point(vector(force), vector(place), true);
+                }
+            }
+        }
+    }
+
+    /// Sets the coefficient of friction on a belt and its load.
+    fn tell_friction(&mut self) {
+        let Some(belt) = &mut self.belt else { return };
+        let [floor, load] = [belt.floor, belt.load].map(|body| self.handles[body]);
+        let velocity = self.bodies[load].linvel();
+        if let Some(coefficient) = belt.change(DVec2::new(velocity.x, velocity.y)) {
+            for &collider in [floor, load].iter().flat_map(|&body| self.bodies[body].colliders()) {
+                self.colliders[collider].set_friction(coefficient);
+            }
+        }
     }
 }
 
@@ -278,6 +330,11 @@ fn colliders(shape: &Shape, segments: usize) -> Result<Vec<ColliderBuilder>, Eng
     Ok(match shape {
         Shape::Disc { radius } => vec![ColliderBuilder::ball(*radius)],
         Shape::Block { width, height } => vec![ColliderBuilder::cuboid(0.5 * width, 0.5 * height)],
+        Shape::Polygon(corners) => {
+            let corners: Vec<_> = corners.iter().map(|&corner| vector(corner)).collect();
+            let hull = ColliderBuilder::convex_polyline(corners);
+            vec![hull.ok_or_else(|| EngineError::Build("a polygon that is not convex".to_owned()))?]
+        }
         Shape::Rounded { corners, radius } => {
             let corners = corners.iter().map(|&corner| vector(corner)).collect();
             let rounded = ColliderBuilder::round_convex_polyline(corners, *radius);

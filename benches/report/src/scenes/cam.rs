@@ -4,7 +4,7 @@
 //! quadrature the time, cut where the contact passes from one edge to the next.
 
 use crate::reference::one_freedom::OneFreedom;
-use crate::scene::{Body, Check, Connector, Inertia, Scene, Shape};
+use crate::scene::{Body, Check, Connector, Inertia, Scene, Shape, Surface};
 use glam::DVec2;
 use halfgap::BodyState;
 use halfgap::geometry::{EdgeSpec, PathSpec};
@@ -82,7 +82,7 @@ pub(super) fn scene() -> Scene {
         inertia: Some(CAM),
         start,
         elasticity: 0.0,
-        friction: 0.0,
+        surface: Surface::SMOOTH,
         spin: 0.0,
     };
     let roller = Body::disc("roller", ROLLER, ROLLER_MASS, DVec2::new(0.0, BASE + ROLLER), DVec2::ZERO);

@@ -1,11 +1,12 @@
-//! The `exact__*` scenes of the tests without friction, whose states are known to 1e-13: closed forms, or
-//! integrated far tighter in minimal coordinates.
+//! Scenes of the tests whose states are known to 1e-13: closed forms, or integrated far tighter in minimal coordinates.
 
-use crate::scene::{Body, Check, Connector, End, Inertia, Scene, Shape};
+use crate::scene::{Body, Check, Connector, End, Inertia, Scene, Shape, Spring, Surface};
 use glam::DVec2;
 use halfgap::BodyState;
 use halfgap::geometry::{EdgeSpec, PathSpec};
-use halfgap::scene::{BodyData, ConnectorData, EdgeData, ExpectedData, ForceData, PointData, ShapeData};
+use halfgap::scene::{
+    BodyData, ConnectorData, EdgeData, ExpectedData, ForceData, PointData, ShapeData, SpringData,
+};
 use std::path::Path;
 
 /// What the states in the files are good to [m].
@@ -13,42 +14,64 @@ const REFERENCE_ERROR: f64 = 1e-13;
 
 /// Reads the scene of a file of which nothing is known, with a grid [s] of times at which it is looked at.
 pub(super) fn read_pile(name: &str, grid: f64) -> Scene {
-    let file =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/steps").join(format!("{name}.json"));
-    let data = halfgap::scene::Scene::read(file).expect("the scenes of the tests can be read");
-    let bodies = data.bodies.iter().map(body).collect();
-    let mut scene = Scene::new(name, data.about.as_deref().unwrap_or(&data.title), bodies);
-    for force in &data.forces {
-        let ForceData::Gravity(gravity) = force else { panic!("only gravity acts in {name}") };
-        scene.gravity += DVec2::from(gravity.acceleration);
-    }
+    let (mut scene, data) = scene(name, &format!("steps/{name}.json"));
     (scene.duration, scene.check_grid) = (data.run.duration, grid);
     scene
 }
 
 /// Reads a scene by its name, with the grid [s] of its check times.
 pub(super) fn read(name: &str, grid: f64) -> Scene {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/scenes");
-    let data = halfgap::scene::Scene::read(folder.join(format!("exact__{name}.json")))
-        .expect("the scenes of the tests can be read");
-    let bodies = data.bodies.iter().map(body).collect();
+    read_known(name, &format!("scenes/exact__{name}.json"), grid)
+}
+
+/// Reads a scene with known states from a file of the tests. States at times off the grid [s] are left out, for peers
+/// cannot stop there.
+pub(super) fn read_known(name: &str, file: &str, grid: f64) -> Scene {
+    let (scene, data) = scene(name, file);
     let index = |name: &str| data.bodies.iter().position(|body| body.name == name);
-    let mut scene = Scene::new(name, data.about.as_deref().unwrap_or(&data.title), bodies);
-    scene.collisions = data.run.collisions;
-    scene.connectors = data.connectors.iter().map(|pin| connector(pin, &index)).collect();
-    for force in &data.forces {
-        let ForceData::Gravity(gravity) = force else { panic!("only gravity acts in {name}") };
-        scene.gravity += DVec2::from(gravity.acceleration);
-    }
-    let checks = data.expected.iter().map(|expected| check(expected, &index)).collect();
+    let is_on_grid = |time: f64| (time / grid - (time / grid).round()).abs() < 1e-9;
+    let known = data.expected.iter().filter(|expected| is_on_grid(expected.time));
+    let checks = known.map(|expected| check(expected, &index)).collect();
     scene.with_checks(grid, checks).with_reference(
         "closed form, or integrated far tighter in minimal coordinates; part of the tests",
         REFERENCE_ERROR,
     )
 }
 
+/// What a file of the tests has of a scene besides known states, and the file itself.
+fn scene(name: &str, file: &str) -> (Scene, halfgap::scene::Scene) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data");
+    let data = halfgap::scene::Scene::read(folder.join(file)).expect("the scenes of the tests can be read");
+    let bodies = data.bodies.iter().map(body).collect();
+    let index = |name: &str| data.bodies.iter().position(|body| body.name == name);
+    let mut scene = Scene::new(name, data.about.as_deref().unwrap_or(&data.title), bodies);
+    scene.collisions = data.run.collisions;
+    scene.connectors = data.connectors.iter().map(|pin| connector(pin, &index)).collect();
+    for force in &data.forces {
+        match force {
+            ForceData::Gravity(gravity) => scene.gravity += DVec2::from(gravity.acceleration),
+            ForceData::Spring(spring) => scene.springs.push(spring_between(spring, &index)),
+            _ => panic!("only gravity and springs act in {name}"),
+        }
+    }
+    (scene, data)
+}
+
+/// # Panics
+/// The body has something that scenes of the report do not.
 fn body(data: &BodyData) -> Body {
-    let inertia = data.mass.zip(data.moment).map(|(mass, moment)| Inertia { mass, moment });
+    let of_origin = data.center_of_mass.is_none_or(|center| DVec2::from(center) == DVec2::ZERO);
+    let is_plain =
+        data.origin.is_none() && data.rolling_resistance == 0.0 && data.tangential_elasticity == 0.0;
+    assert!(of_origin && is_plain && data.motion.is_none(), "the report knows no such body: {data:?}");
+    let shape = shape(&data.shape);
+    // Uniform over the shape, if not given.
+    let moment = |mass: f64| {
+        let geometry = shape.geometry().expect("the scenes of the tests have sound shapes");
+        mass * geometry.mass_properties().moment_per_mass
+    };
+    let inertia = |mass| Inertia { mass, moment: data.moment.unwrap_or_else(|| moment(mass)) };
+    let inertia = data.mass.filter(|_| !data.fixed).map(inertia);
     let start = BodyState {
         position: data.position.unwrap_or_default().into(),
         angle: data.angle,
@@ -57,11 +80,15 @@ fn body(data: &BodyData) -> Body {
     };
     Body {
         name: data.name.clone(),
-        shape: shape(&data.shape),
+        shape,
         inertia,
         start,
         elasticity: data.elasticity,
-        friction: data.friction,
+        surface: Surface {
+            friction: data.friction,
+            static_friction: data.static_friction.unwrap_or(data.friction),
+            speed: data.surface_velocity,
+        },
         spin: 0.0,
     }
 }
@@ -70,6 +97,9 @@ fn shape(data: &ShapeData) -> Shape {
     match data {
         ShapeData::Disc(disc) => Shape::Disc { radius: disc.radius },
         ShapeData::Block(block) => Shape::Block { width: block.width, height: block.height },
+        ShapeData::Polygon(polygon) => {
+            Shape::Polygon(polygon.vertices.iter().map(|&vertex| vertex.into()).collect())
+        }
         ShapeData::Outline(outline) => {
             let path = |path: &halfgap::scene::PathData| PathSpec {
                 start: path.start.into(),
@@ -92,8 +122,17 @@ fn edge(data: &EdgeData) -> EdgeSpec {
 
 fn connector(data: &ConnectorData, index: &impl Fn(&str) -> Option<usize>) -> Connector {
     let ConnectorData::Pin(pin) = data else { panic!("exact scenes have pins only") };
-    let end = |point: &PointData| End { body: index(&point.body), point: point.point.into() };
-    Connector::Pin(end(&pin.a), end(&pin.b))
+    Connector::Pin(end(&pin.a, index), end(&pin.b, index))
+}
+
+fn spring_between(data: &SpringData, index: &impl Fn(&str) -> Option<usize>) -> Spring {
+    assert!(data.damping == 0.0, "springs of exact scenes have no damping");
+    let SpringData { a, b, rest_length, stiffness, .. } = data;
+    Spring { a: end(a, index), b: end(b, index), rest_length: *rest_length, stiffness: *stiffness }
+}
+
+fn end(data: &PointData, index: &impl Fn(&str) -> Option<usize>) -> End {
+    End { body: index(&data.body), point: data.point.into() }
 }
 
 fn check(data: &ExpectedData, index: &impl Fn(&str) -> Option<usize>) -> Check {

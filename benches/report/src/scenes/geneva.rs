@@ -5,7 +5,7 @@
 //! the reference.
 
 use crate::reference::geneva::Geneva;
-use crate::scene::{Body, Check, Connector, End, Inertia, Scene, Shape};
+use crate::scene::{Body, Check, Connector, End, Inertia, Scene, Shape, Surface};
 use glam::DVec2;
 use halfgap::BodyState;
 use halfgap::geometry::{EdgeSpec, PathSpec};
@@ -61,7 +61,7 @@ pub(super) fn scene() -> Scene {
         inertia: Some(PIN_INERTIA),
         start: pin_start,
         elasticity: 0.0,
-        friction: 0.0,
+        surface: Surface::SMOOTH,
         spin: 0.0,
     };
     let shape = Shape::Outline(vec![outline(&drive)]);
@@ -71,7 +71,7 @@ pub(super) fn scene() -> Scene {
         inertia: Some(WHEEL),
         start: wheel_start,
         elasticity: 0.0,
-        friction: 0.0,
+        surface: Surface::SMOOTH,
         spin: 0.0,
     };
     let mut scene = Scene::new("geneva_drive", "a pin turns a wheel of six slots by steps", vec![pin, wheel]);

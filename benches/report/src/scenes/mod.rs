@@ -6,6 +6,7 @@ mod chain;
 mod convex_arc;
 mod exact;
 mod four_bar;
+mod friction;
 mod geneva;
 mod impacts;
 pub mod piles;
@@ -16,8 +17,9 @@ use crate::scene::Scene;
 /// How a scene is made: its name is known before, as its answer may take a while.
 type Maker = (&'static str, fn() -> Scene);
 
-/// All scenes, in the order of the report: impacts, mechanisms, contacts, and piles of which only the time is measured.
-const MAKERS: [Maker; 19] = [
+/// All scenes, in the order of the report: impacts, mechanisms, contacts, friction, and piles of which only the time is
+/// measured.
+const MAKERS: [Maker; 29] = [
     ("ball_bounce", || exact::read("ball_bounce", 0.05)),
     ("bounce_to_rest", impacts::to_rest),
     ("two_discs_e1", || exact::read("two_discs_e1", 0.5)),
@@ -35,6 +37,16 @@ const MAKERS: [Maker; 19] = [
     ("cam_and_roller", cam::scene),
     ("geneva_drive", geneva::scene),
     ("brachistochrone", rail::scene),
+    ("block_slide_friction", || exact::read("block_slide_friction", 0.25)),
+    ("disc_slips_then_rolls", || friction::without_bounce("disc_slips_then_rolls", 0.25)),
+    ("disc_rolls_in_bowl", || friction::without_bounce("disc_rolls_in_bowl", 0.1)),
+    ("disc_bounces_sliding", || friction::read("disc_bounces_sliding", 0.1)),
+    ("block_rocks", || friction::read("block_rocks", 0.2)),
+    ("belt_stick_slip", friction::belt),
+    ("friction_drive", || friction::without_bounce("friction_drive", 0.1)),
+    ("ladder_rests", || friction::without_bounce("ladder_rests", 1.0)),
+    ("stack_10", || friction::at_rest("stack_10", 1.0)),
+    ("pyramid_20", || friction::at_rest("pyramid_20", 1.0)),
     ("settling_discs", piles::discs),
     ("stack_of_boxes", piles::stack),
 ];
