@@ -3,7 +3,7 @@
 //! `cargo bench -p halfgap-report --bench piles -- [--only NAME]... [--engine PART] [--passes N]`
 
 use halfgap_report::engines::Engine;
-use halfgap_report::engines::box2d::Box2d;
+use halfgap_report::engines::box2d::{Box2d, Contacts};
 use halfgap_report::engines::halfgap::Halfgap;
 use halfgap_report::engines::rapier::{Joints, Rapier, Tuning};
 use halfgap_report::pile_runs::{PileRun, run};
@@ -14,7 +14,13 @@ fn engines() -> Vec<Box<dyn Engine>> {
         Box::new(Halfgap { tolerance, step: Some(1.0 / hertz) })
     };
     vec![
-        Box::new(Box2d { steps_per_check: 1, substeps: 4, segments: 48, scale: 1.0 }),
+        Box::new(Box2d {
+            steps_per_check: 1,
+            substeps: 4,
+            segments: 48,
+            scale: 1.0,
+            contacts: Contacts::Soft,
+        }),
         Box::new(Rapier {
             steps_per_check: 1,
             iterations: 4,

@@ -3,6 +3,8 @@
 //! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
 //! [--merge FILE]... [--passes N] [--gas]`
 //!
+//! `overview.svg` has all scenes without friction that were run, `friction.svg` those with it.
+//!
 //! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an
 //! earlier table, and `--passes` is the number of passes through everything: of equal runs the least time is kept, for
 //! a machine may be busy. `--gas` measures impacts per second of free bodies instead.
@@ -112,13 +114,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{}: {}; {answer}", scene.name, scene.about);
     }
     let rows = run_all(&options, &scenes)?;
-    let answered = scenes.iter().filter(|scene| scene.has_answer());
-    let names: Vec<String> = answered.map(|scene| scene.name.clone()).collect();
+    let answered = || scenes.iter().filter(|scene| scene.has_answer());
+    let names: Vec<String> = answered().map(|scene| scene.name.clone()).collect();
     fs::write(options.out.join("runs.csv"), csv::table(&rows))?;
     for name in &names {
         fs::write(options.out.join(format!("{name}.svg")), plot::scene(&rows, name)?)?;
     }
-    fs::write(options.out.join("overview.svg"), plot::overview(&rows, &names)?)?;
+    for (file, is_rough) in [("overview.svg", false), ("friction.svg", true)] {
+        let shown = answered().filter(|scene| scene.has_friction() == is_rough);
+        let shown: Vec<String> = shown.map(|scene| scene.name.clone()).collect();
+        if !shown.is_empty() {
+            fs::write(options.out.join(file), plot::overview(&rows, &shown)?)?;
+        }
+    }
     let tables = format!("{}\n{}", levels::table(&rows, &names), levels::piles(&rows));
     fs::write(options.out.join("tables.md"), &tables)?;
     println!("\n{tables}");

@@ -230,6 +230,12 @@ impl Scene {
         !self.checks.is_empty()
     }
 
+    /// True if some body is rough.
+    #[must_use]
+    pub fn has_friction(&self) -> bool {
+        self.bodies.iter().any(|body| body.surface.static_friction > 0.0)
+    }
+
     /// True if some shape has arcs that are no full circle, which engines of segments must cut up.
     #[must_use]
     pub fn has_arcs(&self) -> bool {

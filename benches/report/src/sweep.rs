@@ -1,7 +1,7 @@
 //! All runs of the report: every scene, every engine, over its settings.
 
 use crate::engines::Engine;
-use crate::engines::box2d::Box2d;
+use crate::engines::box2d::{Box2d, Contacts};
 use crate::engines::halfgap::Halfgap;
 use crate::engines::rapier::{Joints, Rapier, Tuning};
 use crate::measure::{Measurement, Repeats, measure};
@@ -166,15 +166,21 @@ pub fn rapier_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     rows
 }
 
-/// Measures Box2D over steps, substeps, segments and scales.
+/// Measures Box2D over steps, substeps, segments and scales, and over the stiffness of contacts where bodies may rest on
+/// each other.
 #[must_use]
 pub fn box2d_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     let mut rows = Vec::new();
-    let variants = [(1.0, 4), (100.0, 4), (100.0, 16)];
+    let mut variants =
+        vec![(1.0, 4, Contacts::Soft), (100.0, 4, Contacts::Soft), (100.0, 16, Contacts::Soft)];
+    variants.truncate(effort.variants);
+    if scene.has_friction() {
+        variants.extend([4, 16].map(|substeps| (100.0, substeps, Contacts::Stiff)));
+    }
     for &segments in segments(scene, effort) {
-        for (scale, substeps) in variants.into_iter().take(effort.variants) {
+        for &(scale, substeps, contacts) in &variants {
             let make = |steps_per_check| -> Box<dyn Engine> {
-                Box::new(Box2d { steps_per_check, substeps, segments, scale })
+                Box::new(Box2d { steps_per_check, substeps, segments, scale, contacts })
             };
             refine(&make, scene, effort, &mut rows);
         }

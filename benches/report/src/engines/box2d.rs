@@ -19,6 +19,8 @@ const NO_LIMIT: f32 = 1e9;
 const PUSH_SPEED: f32 = 3.0;
 /// Stock: frequency [1/s] and damping ratio of contacts.
 const CONTACT_SPRING: (f32, f32) = (30.0, 10.0);
+/// Not stock: no limit of our own on the frequency [1/s] of contacts. Box2D bounds it by a quarter of that of substeps.
+const STIFF_CONTACTS: f32 = 1e9;
 /// Not stock: frequency of joints as a part of that of substeps, the most that Box2D itself allows for contacts.
 const JOINT_SHARE: f64 = 0.25;
 /// Stock: damping ratio of joints.
@@ -26,6 +28,15 @@ const JOINT_DAMPING: f32 = 2.0;
 /// Slip [m/s] on a belt that counts as none: tenfold the rounding of half a metre per second. A tenth of it takes loads
 /// at rest for loads that slip, tenfold is found out late.
 const LEAST_SLIP: f64 = 1e-6;
+
+/// How much contacts yield.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contacts {
+    /// As they come: boxes on each other sink in by their weight, however short the step.
+    Soft,
+    /// As little as the substep allows, where lengths are scaled; stock contacts are as they come.
+    Stiff,
+}
 
 /// Box2D with its settings.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +50,8 @@ pub struct Box2d {
     /// All lengths are multiplied by this. Its slop of 5 mm and other lengths are built in: at 100, they are
     /// a hundredth.
     pub scale: f32,
+    /// How much contacts yield.
+    pub contacts: Contacts,
 }
 
 impl Engine for Box2d {
@@ -51,9 +64,10 @@ impl Engine for Box2d {
     }
 
     fn settings(&self) -> String {
-        let Self { steps_per_check, substeps, segments, scale } = self;
+        let Self { steps_per_check, substeps, segments, scale, contacts } = self;
+        let stiff = if *contacts == Contacts::Stiff { " stiff" } else { "" };
         let segments = if *segments > 0 { format!(" segments {segments}") } else { String::new() };
-        format!("scale {scale} steps {steps_per_check} substeps {substeps}{segments}")
+        format!("scale {scale}{stiff} steps {steps_per_check} substeps {substeps}{segments}")
     }
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
@@ -88,7 +102,8 @@ impl Running {
         let mut world = foundation.create_world(definition.map_err(refused)?).map_err(refused)?;
         if settings.scale > 1.0 {
             world.set_contact_recycle_distance(0.0).map_err(refused)?;
-            let (hertz, damping) = CONTACT_SPRING;
+            let (stock, damping) = CONTACT_SPRING;
+            let hertz = if settings.contacts == Contacts::Stiff { STIFF_CONTACTS } else { stock };
             world.set_contact_tuning(hertz, damping, PUSH_SPEED * settings.scale).map_err(refused)?;
         }
         let ground = BodyBuilder::from(foundation.body_def()).build().map_err(refused)?;

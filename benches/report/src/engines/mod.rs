@@ -77,7 +77,7 @@ pub trait Session {
 
 #[cfg(test)]
 mod tests {
-    use super::box2d::Box2d;
+    use super::box2d::{Box2d, Contacts};
     use super::halfgap::Halfgap;
     use super::rapier::{Joints, Rapier, Tuning};
     use super::*;
@@ -90,7 +90,13 @@ mod tests {
         let tuning = Tuning::Accurate;
         [
             Box::new(Rapier { steps_per_check, iterations: 4, segments, tuning, joints: Joints::Impulse }),
-            Box::new(Box2d { steps_per_check, substeps: 4, segments, scale: 100.0 }),
+            Box::new(Box2d {
+                steps_per_check,
+                substeps: 4,
+                segments,
+                scale: 100.0,
+                contacts: Contacts::Stiff,
+            }),
         ]
     }
 

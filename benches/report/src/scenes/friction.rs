@@ -32,3 +32,18 @@ fn still(mut scene: Scene) -> Scene {
     scene.bodies = bodies.into_iter().map(|body: Body| body.with_elasticity(0.0)).collect();
     scene
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::scenes;
+
+    #[test]
+    fn rough_bodies_of_a_scene_are_equally_rough() {
+        // Then all rules by which engines combine two coefficients agree.
+        for scene in scenes::wanted(|_| true).iter().filter(|scene| scene.has_friction()) {
+            let rough = scene.bodies.iter().map(|body| body.surface).filter(|surface| surface.friction > 0.0);
+            let pairs: Vec<_> = rough.map(|surface| (surface.friction, surface.static_friction)).collect();
+            assert!(pairs.windows(2).all(|pair| pair[0] == pair[1]), "{}: {pairs:?}", scene.name);
+        }
+    }
+}
