@@ -7,6 +7,7 @@ use crate::rigid::active_set::slips::Slip;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
+use crate::rigid::shares::ROUNDED;
 use halfgap_collision::Collision;
 use halfgap_contact::Jump;
 
@@ -19,8 +20,8 @@ const MOMENT: f64 = 1e-7;
 pub(crate) enum WayOn<'a> {
     /// The velocities (x, y, angle) of the region's bodies change at once.
     Jump(&'a [[f64; 3]]),
-    /// There are forces after all, without some of the candidates.
-    FewerCandidates,
+    /// There are forces after all, once some of the candidates open or slip.
+    FewerSticks,
     /// None is known.
     Nothing,
 }
@@ -44,7 +45,9 @@ pub(crate) fn find_way_on<'a>(
         return WayOn::Jump(&settling.pushed);
     }
     settling.solution.force = of_forces;
-    if drop_loose(settling) { WayOn::FewerCandidates } else { WayOn::Nothing }
+    let any_opens = drop_loose(settling);
+    let any_slips = let_slip(settling, rest);
+    if any_opens || any_slips { WayOn::FewerSticks } else { WayOn::Nothing }
 }
 
 /// Change of the slip speed [m/s] of a candidate by those of the velocities of the region's bodies.
@@ -74,6 +77,19 @@ fn drop_loose(settling: &mut Settling) -> bool {
     loose.len() > before
 }
 
+/// Notes the contacts without slip, up to a speed `rest` [m/s], that slip in the last solution, in which friction has its kinetic bounds
+/// only. False if they were known.
+fn let_slip(settling: &mut Settling, rest: f64) -> bool {
+    let Settling { solution, slips, yielding, .. } = settling;
+    let before = yielding.len();
+    for slip in slips.iter().filter(|slip| slip.row.rate.abs() <= rest) {
+        let side = slip.side_in(solution, slip.surface.kinetic, 0.0);
+        let is_known = yielding.iter().any(|(record, _)| *record == slip.record);
+        yielding.extend(side.filter(|_| !is_known).map(|side| (slip.record, side)));
+    }
+    yielding.len() > before
+}
+
 /// The impulses of a jump, zero up to rounding if there is none: then the last solution has forces, up to a factor. `None` if no impulses
 /// were found.
 fn find_impulses(
@@ -93,8 +109,10 @@ fn find_impulses(
     settling.jumps = false;
     let Settling { problem, solution, solver, candidates, slips, .. } = settling;
     let normal = candidates.iter().map(|&index| region.records()[index].motion.normal_velocity);
-    let rates: Vec<f64> = normal.chain(slips.iter().map(|slip| slip.row.rate)).collect();
     let steps = &assembly.settings().steps;
+    // Rates that are rounding count as much as what forces do in so short a moment.
+    let sound = |rate: f64| if rate.abs() > ROUNDED * steps.speed { rate } else { 0.0 };
+    let rates: Vec<f64> = normal.chain(slips.iter().map(|slip| slip.row.rate)).map(sound).collect();
     let moment = MOMENT * steps.length / steps.speed;
     let mut find = |moment: f64| {
         let found = Jump::find(problem, &rates, moment, solver, solution);

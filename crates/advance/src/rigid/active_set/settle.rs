@@ -57,7 +57,7 @@ pub(crate) fn settle(
     settling.touches.clear();
     settling.excluded.clear();
     settling.candidates.clear();
-    settling.given_way.clear();
+    settling.given_way.clone_from(&settling.yielding);
     let is_start = region.cause() == Cause::Start;
     settling.is_start = is_start;
     let rest = match (is_start, region.is_accumulating()) {

@@ -47,6 +47,9 @@ pub(crate) struct Settling {
     /// Records that are no candidates, as there are forces without them alone.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) loose: Vec<usize>,
+    /// Records whose contacts slip from now on, each to a side, as there are forces if they do.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) yielding: Vec<(usize, f64)>,
     /// Records whose contacts have begun to slip in this event, with the side to which they do.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) given_way: Vec<(usize, f64)>,
@@ -116,6 +119,7 @@ impl Default for Settling {
             jumps: false,
             slack: 0.0,
             loose: Vec::new(),
+            yielding: Vec::new(),
             given_way: Vec::new(),
             excluded: Vec::new(),
             levers: Levers::default(),
@@ -280,9 +284,10 @@ impl Settling {
         }
     }
 
-    /// Lets all records be candidates.
+    /// Lets all records be candidates, and all contacts without slip stick.
     pub(crate) fn forget_loose(&mut self) {
         self.loose.clear();
+        self.yielding.clear();
     }
 
     /// True if a candidate slips.

@@ -11,7 +11,7 @@ use crate::rigid::contacts::friction::{Grip, slip_of};
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
-use crate::rigid::shares::TINY;
+use crate::rigid::shares::ROUNDED_FORCE;
 use crate::rigid::surface::PairSurface;
 use halfgap_collision::TangentRow;
 use halfgap_contact::Solution;
@@ -57,11 +57,15 @@ impl Slip {
     /// Side to which the contact begins to slip in a solution whose accelerations count from `least` [m/s^2] on; `None` if it
     /// sticks.
     fn gives_way(&self, solution: &Solution, slack: f64, least: f64) -> Option<f64> {
+        self.side_in(solution, self.bound(false, slack), least)
+    }
+
+    /// Side to which the contact goes in a solution at its bound, given as a share of the normal force [-], by more than `least`.
+    pub(super) fn side_in(&self, solution: &Solution, bound: f64, least: f64) -> Option<f64> {
         let number = self.number?;
         // Contacts that contradict each other by rounding have no forces at all.
         let (along, force) = (solution.acceleration.get(number)?, solution.force.get(number)?);
-        let bound = self.bound(false, slack) * solution.force[self.place];
-        let is_at_bound = force.abs() >= (1.0 - TINY) * bound;
+        let is_at_bound = force.abs() >= (1.0 - ROUNDED_FORCE) * bound * solution.force[self.place];
         (is_at_bound && along.abs() > least).then(|| along.signum())
     }
 }

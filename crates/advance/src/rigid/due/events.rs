@@ -76,6 +76,14 @@ pub(crate) fn handle_contact(
 
 /// Handles the end of a group's segment, natural or early.
 pub(crate) fn handle_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
+    if rooms.zeno.has_collapsed(leader, rooms.assembly.now())
+        && group_of(&rooms.assembly, &rooms.groups, leader).is_none()
+    {
+        return with_work(rooms, Cause::Collapsed, |rooms, work| {
+            work.seed([leader]);
+            handle_change(rooms, work)
+        });
+    }
     if group_of(&rooms.assembly, &rooms.groups, leader).is_some_and(|group| group.look().is_some()) {
         look_further(
             &mut rooms.assembly,

@@ -17,7 +17,7 @@ pub(super) fn unjam(rooms: &mut Rooms, work: &mut EventWork) -> bool {
     rooms.groups.put_stage(stage);
     let changes = match way_on {
         WayOn::Jump(changes) => changes,
-        WayOn::FewerCandidates => return true,
+        WayOn::FewerSticks => return true,
         WayOn::Nothing => return false,
     };
     let mut work_of_jump = 0.0;

@@ -134,6 +134,11 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
     if let Err(failure) = outcome {
         let error = step_error(&rooms.assembly, &group, failure);
         give_up(&mut rooms.assembly, &mut rooms.connectors, &group);
+        let may_jump = matches!(failure, StepFailure::Collapsed(_)) && group.slips();
+        if may_jump && rooms.zeno.note_collapse(leader, group.start()) {
+            rooms.agenda.set(Source::Group(leader), group.start());
+            return Ok(());
+        }
         return Err(error);
     }
     note_pace(&rooms.assembly, &mut rooms.zeno, &group);

@@ -38,6 +38,9 @@ const MOST_JUMPS: usize = 20;
 
 fn settle_region(rooms: &mut Rooms, work: &mut EventWork, with_hops: bool) -> Result<(), AdvanceError> {
     work.settling.forget_loose();
+    if work.region.cause() == Cause::Collapsed {
+        unjam(rooms, work);
+    }
     for _ in 0..MOST_JUMPS {
         match settle_once(rooms, work, with_hops) {
             Err(AdvanceError::Contacts { .. }) if work.settling.any_slips() && unjam(rooms, work) => {}

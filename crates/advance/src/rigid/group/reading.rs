@@ -125,6 +125,11 @@ impl Group {
         self.rows.iter().any(|row| row.grip != Grip::Smooth)
     }
 
+    /// True if a contact of it slips.
+    pub(crate) fn slips(&self) -> bool {
+        self.rows.iter().any(|row| row.grip.slip_share().is_some())
+    }
+
     /// True if forces of its rows are not unique, and shared as the event found them.
     pub(crate) fn shares_forces(&self) -> bool {
         !(self.spares.is_empty() && self.prescribed.is_empty())

@@ -18,6 +18,8 @@ pub(crate) enum Cause {
     Released(Touch),
     /// The slip of a contact has come to a stop; it went to the positive side or not.
     Stopped(Touch, bool),
+    /// The steps of a group have become endlessly short while its contacts slip: their forces grow beyond all bounds.
+    Collapsed,
     /// Sunk contacts are put back, where contacts carry impulses only.
     Tick,
     /// The point of a rail goes over a smooth joint: velocities stopped by its connectors are rounding, not an impact.

@@ -1,5 +1,6 @@
 //! The past that the limits decide by, for each body and for the system.
 
+use crate::rigid::bodies::instant::is_same_time;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::zeno::budget::Spent;
 use crate::rigid::zeno::stepped::AllStepped;
@@ -21,6 +22,8 @@ pub(crate) struct Zeno {
     pub(super) last_insistent: Option<Time>,
     /// Time at which a group was last ended as soon as it was made, because one of its contacts pulled.
     pub(super) last_pull: Option<Time>,
+    /// Leaders of groups whose steps collapsed while contacts slipped, and when that last was.
+    pub(super) collapsed: (Option<Time>, Vec<BodyId>),
     /// [`AdvanceError::Crawls`] or [`AdvanceError::TooFast`], to be returned once the present event is over; the system
     /// stays valid.
     pub(super) crawls: Option<AdvanceError>,
@@ -53,6 +56,24 @@ impl Zeno {
         self.last_pull = Some(now);
     }
 
+    /// Notes that the steps of a group, which a body leads, have collapsed; false if they have before at the same time.
+    pub(crate) fn note_collapse(&mut self, leader: BodyId, now: Time) -> bool {
+        let (last, leaders) = &mut self.collapsed;
+        if !last.is_some_and(|last| is_same_time(last, now)) {
+            leaders.clear();
+        }
+        *last = Some(now);
+        let is_new = !leaders.contains(&leader);
+        leaders.push(leader);
+        is_new
+    }
+
+    /// True if the steps of a group that a body led have collapsed at a time.
+    pub(crate) fn has_collapsed(&self, leader: BodyId, now: Time) -> bool {
+        let (last, leaders) = &self.collapsed;
+        last.is_some_and(|last| is_same_time(last, now)) && leaders.contains(&leader)
+    }
+
     /// Takes out the error that is to be returned once the present event is over.
     pub(crate) fn take_crawls(&mut self) -> Option<AdvanceError> {
         self.crawls.take()
@@ -72,6 +93,7 @@ impl Zeno {
             duration: 0.0,
             last_insistent: None,
             last_pull: None,
+            collapsed: (None, Vec::new()),
             crawls: None,
             spent: vec![Spent::default(); body_count],
             stepped: AllStepped::new(body_count),
