@@ -167,7 +167,7 @@ impl ActiveRow {
 
 impl Mechanism<'_> {
     /// Three of some rows between two sets of bodies that let these move against each other in no way; `None` if all of them leave
-    /// some. A test tells the bodies of the second set.
+    /// some, or need no contact for that. A test tells the bodies of the second set.
     fn lock_of<'a>(
         &self,
         rows: impl Iterator<Item = (usize, &'a ActiveRow)>,
@@ -175,7 +175,7 @@ impl Mechanism<'_> {
         moving_of: impl Fn(BodyId) -> Moving,
     ) -> Option<[usize; 3]> {
         let mut found: Vec<(usize, [f64; 3])> = Vec::with_capacity(3);
-        let mut center = None;
+        let (mut center, mut is_pressed) = (None, false);
         for (index, row) in rows {
             let movings = row.bodies.map(&moving_of);
             let side = usize::from(is_second(row.bodies[1]));
@@ -193,10 +193,11 @@ impl Mechanism<'_> {
             }
             let size = left.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
             if size > TINY {
+                is_pressed |= row.bears() == Some(Bears::Pressure);
                 found.push((index, left.map(|entry| entry / size)));
             }
             if let [a, b, c] = found[..] {
-                return Some([a.0, b.0, c.0]);
+                return is_pressed.then_some([a.0, b.0, c.0]);
             }
         }
         None
