@@ -7,13 +7,15 @@
 //! cargo run --profile dist -p halfgap-tests --example bits -- --without haste      # with one remedy off
 //! ```
 //!
-//! The scenes of the repository, the reference scenes, and `--count` generated ones of each kind. A run ends after so
+//! The scenes of the repository, the reference scenes, those with friction, and `--count` generated ones of each kind. A run ends after so
 //! many reports of its progress, not after a time, so that the hash is the same on a slow machine.
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{Record, Remedy, RemedyCounts, RemedySet, RunPlan, World, WorldBuilder, run};
-use halfgap_tests::generate::{coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed};
-use halfgap_tests::{data, reference_scene_names};
+use halfgap_tests::generate::{
+    coarse_of_seed, impulses_of_seed, pushed_stack_of_seed, rough_of_seed, scene_of_seed, variation_of_seed,
+};
+use halfgap_tests::{data, names_in, reference_scene_names};
 use serde_json::Value;
 use std::fmt::{self, Write};
 use std::ops::ControlFlow;
@@ -47,16 +49,21 @@ fn main() {
     let outcomes = |count: usize, scene: &(dyn Fn(usize) -> Scene + Sync)| outcomes(count, scene, without);
     let of_repository =
         outcomes(files.len(), &|index| Scene::read(files[index].path()).expect("a fine scene"));
-    let names = reference_scene_names();
-    let reference = outcomes(names.len(), &|index| {
-        Scene::read(data(&format!("scenes/{}.json", names[index]))).expect("a fine scene")
-    });
-    let mut groups = vec![("repository", of_repository), ("reference", reference)];
-    let kinds: [Kind; 4] = [
+    let of_folder = |folder: &str, names: &[String]| {
+        outcomes(names.len(), &|index| {
+            Scene::read(data(&format!("{folder}/{}.json", names[index]))).expect("a fine scene")
+        })
+    };
+    let reference = of_folder("scenes", &reference_scene_names());
+    let friction = of_folder("friction", &names_in("friction"));
+    let mut groups = vec![("repository", of_repository), ("reference", reference), ("friction", friction)];
+    let kinds: [Kind; 6] = [
         ("ordinary", scene_of_seed),
         ("coarse", coarse_of_seed),
         ("impulses", impulses_of_seed),
         ("varied", variation_of_seed),
+        ("rough", rough_of_seed),
+        ("pushed", pushed_stack_of_seed),
     ];
     for (kind, of_seed) in kinds {
         let scene = |index| Scene::parse(&of_seed(1 + index as u64).to_string(), SceneFormat::Json);

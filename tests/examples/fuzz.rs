@@ -9,6 +9,7 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --impulses # with contacts that carry impulses only
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --varied   # reference scenes with other numbers
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --rough    # with friction
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --rolling  # with rolling resistance, too
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --pushed   # stacks of blocks that slide
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --needs haste,accumulation   # tells which scenes need a remedy
 //! ```
@@ -17,8 +18,8 @@
 
 use halfgap::{Remedy, RemedySet};
 use halfgap_tests::generate::{
-    billiard_of_seed, coarse_of_seed, impulses_of_seed, pushed_stack_of_seed, rough_of_seed, scene_of_seed,
-    variation_of_seed,
+    billiard_of_seed, coarse_of_seed, impulses_of_seed, pushed_stack_of_seed, rolling_of_seed, rough_of_seed,
+    scene_of_seed, variation_of_seed,
 };
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial, trial_without};
 use halfgap_tests::shrink::shrink;
@@ -47,6 +48,7 @@ Runs generated scenes and counts what became of them.
   --impulses    or such whose contacts carry impulses only
   --varied      or reference scenes with other numbers
   --rough       or scenes with friction
+  --rolling     or scenes with friction and rolling resistance
   --pushed      or three blocks on each other that slide
   --needs R,S   and again where one of these remedies acts, without it";
 
@@ -137,6 +139,8 @@ enum Scenes {
     Varied,
     /// With friction.
     Rough,
+    /// With friction and rolling resistance.
+    Rolling,
     /// Stacks that are pushed.
     Pushed,
 }
@@ -149,6 +153,7 @@ impl Scenes {
             Self::Impulses => impulses_of_seed(seed),
             Self::Varied => variation_of_seed(seed),
             Self::Rough => rough_of_seed(seed),
+            Self::Rolling => rolling_of_seed(seed),
             Self::Pushed => pushed_stack_of_seed(seed),
         }
     }
@@ -161,13 +166,14 @@ impl Scenes {
             Self::Impulses => Some("--impulses"),
             Self::Varied => Some("--varied"),
             Self::Rough => Some("--rough"),
+            Self::Rolling => Some("--rolling"),
             Self::Pushed => Some("--pushed"),
         }
     }
 
     /// The scenes that an option asks for.
     fn asked_for(option: &str) -> Option<Self> {
-        [Self::Coarse, Self::Impulses, Self::Varied, Self::Rough, Self::Pushed]
+        [Self::Coarse, Self::Impulses, Self::Varied, Self::Rough, Self::Rolling, Self::Pushed]
             .into_iter()
             .find(|scenes| scenes.option() == Some(option))
     }

@@ -70,7 +70,15 @@ mod tests {
         ));
         let bodies = [0, 1].map(halfgap::BodyId);
         let (point, normal) = (halfgap::geometry::DVec2::ZERO, halfgap::geometry::DVec2::X);
-        let contact = ContactForce { bodies, connector: None, point, normal, force, friction: None };
+        let contact = ContactForce {
+            bodies,
+            connector: None,
+            point,
+            normal,
+            force,
+            friction: None,
+            rolling_moment: None,
+        };
         let found =
             not_touching(&world, &contact, 1e-12).or_else(|| pulling(&world, &contact, &[contact], 1e-12));
         found.map(|(kind, _)| kind)

@@ -36,8 +36,8 @@
 //! `motion` and `flight` describe the motion of a body during an interval, `body` its shape and inertia. `record` is
 //! the collision record, with its `tolerances` and its `zone`; `gap_state` holds the predicates by which an advance
 //! decides, `estimate` the first guess of the time of an event; `kinematics` gives the gap's rate, Jacobian and
-//! acceleration term, `tangent` those of the slip along it. `detect` finds the records of two bodies at one moment and `merge` drops doubles. `first_contact`
-//! finds the time at which two moving bodies first close to their target gap: by `closed` forms (roots of a `quadratic`)
+//! acceleration term, `tangent` those of the slip along it, `rolling` those of the relative rotation. `detect` finds the
+//! records of two bodies at one moment and `merge` drops doubles. `first_contact` finds the time at which two moving bodies first close to their target gap: by `closed` forms (roots of a `quadratic`)
 //! where motions are polynomial, by the `march` along second-order bounds otherwise. `connector` ties bodies by rows
 //! that are gaps too. `broad` finds the bodies whose boxes overlap.
 
@@ -59,6 +59,7 @@ mod motion;
 mod near;
 mod quadratic;
 mod record;
+mod rolling;
 mod tangent;
 mod tolerances;
 mod zone;
@@ -86,6 +87,7 @@ pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
 pub use near::{Nearness, visit_near_features};
 pub use quadratic::first_closing_time;
 pub use record::{Collision, ContactGeometry, ContactMotion, Detector, Participant, Parties, Response, Site};
+pub use rolling::rolling_radius;
 pub use tangent::{TangentRow, Touch, turned};
 pub use tolerances::Tolerances;
 pub use zone::Zone;

@@ -98,6 +98,9 @@ pub struct ContactForce {
     pub force: f64,
     /// Friction, of a contact whose surfaces have some, in an advance by events.
     pub friction: Option<ContactFriction>,
+    /// Moment of rolling resistance on `bodies[0]` [N m], counter-clockwise positive, of a contact whose surfaces have some, in an advance by events;
+    /// `bodies[1]` gets the opposite.
+    pub rolling_moment: Option<f64>,
 }
 
 /// Friction at a contact.

@@ -88,7 +88,7 @@ pub use halfgap_collision::{
 };
 
 pub use finding::Finding;
-pub use halfgap_advance::rigid::{Surface, UniformMotion};
+pub use halfgap_advance::rigid::{PairRule, Surface, UniformMotion};
 pub use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 pub use halfgap_geometry as geometry;
 pub use intervention::Intervention;

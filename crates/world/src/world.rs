@@ -421,6 +421,7 @@ pub(crate) fn contact_force(row: &RowForce) -> ContactForce {
             most,
             sticks,
         }),
+        rolling_moment: row.rolling.map(|rolling| rolling.moment),
     }
 }
 

@@ -34,7 +34,7 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
-    /// A body has what only steps simulate so far: rolling resistance, or, if it is fixed, a motion.
+    /// A body has what only steps simulate so far: if it is fixed, a motion.
     #[error("body \"{body}\": events do not simulate its {quantity} yet: advance by steps")]
     NeedsSteps {
         /// Name of the body.

@@ -7,6 +7,8 @@ use serde_json::{Value, json};
 /// Largest coefficients of friction, of scenes and of stacks.
 const ROUGHEST: f64 = 3.0;
 const ROUGHEST_STACK: f64 = 1.5;
+/// Largest rolling resistance.
+const MOST_ROLLING: f64 = 1.0;
 /// Blocks of a stack.
 const BLOCKS: usize = 3;
 
@@ -34,6 +36,20 @@ pub fn rough_of_seed(seed: u64) -> Value {
         }
     }
     scene["run"]["restitution"] = json!(random.one_of(&["energetic", "energetic", "poisson"]));
+    scene
+}
+
+/// The rough scene of a seed with rolling resistance on half of its bodies, of which some have no friction.
+#[must_use]
+pub fn rolling_of_seed(seed: u64) -> Value {
+    let mut scene = rough_of_seed(seed);
+    let mut random = Random::new(seed ^ 0x0011_0e57);
+    let most = MOST_ROLLING * random.unit() * random.unit();
+    for body in scene["body"].as_array_mut().into_iter().flatten() {
+        if random.chance(0.5) {
+            body["rolling_resistance"] = json!(random.between(0.0, most));
+        }
+    }
     scene
 }
 

@@ -9,13 +9,6 @@ fn world_of(text: &str) -> World {
     halfgap_tests::world_of(&format!("format = \"halfgap-scene-1\"\ntitle = \"friction\"\n{text}"))
 }
 
-/// Names of the scenes with known answers, but for that with rolling resistance, which events do not know yet.
-fn names() -> Vec<String> {
-    let mut names = names_in("friction");
-    names.retain(|name| name != "x_disc_rolling_resistance");
-    names
-}
-
 /// A scene with known answers, run at a tolerance.
 fn checked(name: &str, tolerance: f64) -> CheckReport {
     let scene = Scene::read(data(&format!("friction/{name}.json"))).expect("the scene can be read");
@@ -26,8 +19,8 @@ fn checked(name: &str, tolerance: f64) -> CheckReport {
 
 #[test]
 fn every_scene_with_friction_is_reached_within_its_own_tolerances() {
-    let names = names();
-    assert!(names.len() >= 34, "{} scenes", names.len());
+    let names = names_in("friction");
+    assert!(names.len() >= 35, "{} scenes", names.len());
     for name in &names {
         let report = checked(name, 1e-10);
         assert!(report.ok, "{name}: {:?}", report.why);
@@ -37,7 +30,7 @@ fn every_scene_with_friction_is_reached_within_its_own_tolerances() {
 #[test]
 fn errors_fall_with_the_tolerance() {
     // At coarse tolerances the correction of the start lets the undecided rod close a little, and it jams.
-    for name in names().iter().filter(|name| *name != "painleve_rod_undecided") {
+    for name in names_in("friction").iter().filter(|name| *name != "painleve_rod_undecided") {
         let errors = [1e-4, 1e-5, 1e-6, 1e-7].map(|tolerance| {
             checked(name, tolerance).position_error.unwrap_or_else(|| panic!("{name} at {tolerance}"))
         });

@@ -2,7 +2,9 @@
 
 use halfgap::scene::{Scene, SceneFormat};
 use halfgap::{Event, World};
-use halfgap_tests::generate::{coarse_of_seed, impulses_of_seed, scene_of_seed, variation_of_seed};
+use halfgap_tests::generate::{
+    coarse_of_seed, impulses_of_seed, rolling_of_seed, scene_of_seed, variation_of_seed,
+};
 use halfgap_tests::{reference_scene, reference_scene_names};
 use serde_json::Value;
 use std::fmt::Write;
@@ -112,5 +114,6 @@ fn generated_scenes_go_on() {
         compare(&format!("coarse {seed}"), &parse(&coarse_of_seed(seed)));
         compare(&format!("impulses {seed}"), &parse(&impulses_of_seed(seed)));
         compare(&format!("varied {seed}"), &parse(&variation_of_seed(seed)));
+        compare(&format!("rolling {seed}"), &parse(&rolling_of_seed(seed)));
     }
 }

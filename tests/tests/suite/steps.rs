@@ -3,8 +3,8 @@
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::scene::{RunData, Scene, SceneFormat, StrategyData};
 use halfgap::{
-    AdvanceBy, BodyId, BodySpec, BodyState, CheckReport, ContactForce, Event, Intervention, Surface, World,
-    WorldBuilder, WorldSettings, check,
+    AdvanceBy, BodyId, BodySpec, BodyState, CheckReport, ContactForce, Event, Intervention, UniformMotion,
+    World, WorldBuilder, WorldSettings, check,
 };
 use halfgap_tests::{data, names_in};
 use std::f64::consts::TAU;
@@ -375,7 +375,7 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
     for (run, field, place) in [
         ("contacts = false, time_step = 0.1", "friction = 0.5", "body[0].friction"),
         ("stabilization = \"velocity\"", "static_friction = 0.5", "body[0].static_friction"),
-        (events, "rolling_resistance = 0.5", "body[0].rolling_resistance"),
+        ("stabilization = \"velocity\"", "rolling_resistance = 0.5", "body[0].rolling_resistance"),
         (events, "motion = { angular_velocity = 1.0 }", "body[0].motion"),
         (
             steps,
@@ -392,17 +392,17 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
 
 #[test]
 fn what_only_steps_know_is_refused_from_code_too_and_so_is_a_step_of_no_length() {
-    let build = |strategy: AdvanceBy, rolling_resistance: f64| {
+    let build = |strategy: AdvanceBy, spin: f64| {
         let mut builder = WorldBuilder::new(WorldSettings { strategy, ..WorldSettings::default() });
         let shape = Shape::disc(1.0).expect("a fine radius");
-        let surface =
-            Surface { friction: 0.5, static_friction: 0.5, rolling_resistance, ..Surface::default() };
-        builder.add(BodySpec { surface, ..BodySpec::movable("disc", shape, 1.0, BodyState::default()) });
+        let motion = UniformMotion { angular_velocity: spin, ..UniformMotion::default() };
+        let motion = (spin != 0.0).then_some(motion);
+        builder.add(BodySpec { motion, ..BodySpec::fixed("disc", shape, DVec2::ZERO) });
         builder.build().map(|_| ()).map_err(|error| error.to_string())
     };
     let steps = |step: f64| AdvanceBy::Steps { step: Some(step), residual: 1e-6 };
-    let refused = build(AdvanceBy::Events, 0.5).expect_err("events know no rolling resistance");
-    assert_eq!(refused, "body \"disc\": events do not simulate its rolling resistance yet: advance by steps");
+    let refused = build(AdvanceBy::Events, 0.5).expect_err("events move no fixed body");
+    assert_eq!(refused, "body \"disc\": events do not simulate its motion yet: advance by steps");
     for step in [0.0, -1.0, f64::NAN] {
         let refused = build(steps(step), 0.5).expect_err("no time goes by");
         assert!(refused.contains("time_step must be positive and finite"), "{refused}");

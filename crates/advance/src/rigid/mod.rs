@@ -50,6 +50,7 @@ mod shares;
 mod sinking;
 mod stepping;
 mod surface;
+mod surfaces;
 mod system;
 #[cfg(test)]
 mod test_scene;
@@ -76,7 +77,9 @@ pub(crate) use parts::{POSITIVE, check_bodies_of_force_law, keep_to};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;
 pub use settings::{ExtraAcceleration, RegionSteps, RigidSettings, StepControl};
-pub use surface::{PairSurface, RowFriction, Surface};
+pub use surface::{PairSurface, RowFriction, RowRolling, Surface};
+pub use surfaces::PairRule;
+pub(crate) use surfaces::PairRules;
 pub use system::RigidSystem;
 #[cfg(feature = "save")]
 pub use system::SavedSystem;

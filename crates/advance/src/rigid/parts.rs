@@ -4,6 +4,7 @@ use crate::rigid::bodies::force_law::ForceLaw;
 use crate::rigid::bodies::trajectory::FreeMotion;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::surface::Surface;
+use crate::rigid::surfaces::PairRule;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
@@ -20,6 +21,8 @@ pub struct RigidParts {
     pub force_laws: Vec<Arc<dyn ForceLaw>>,
     /// Pairs of bodies that never collide with each other.
     pub excluded: Vec<(BodyId, BodyId)>,
+    /// Pairs of bodies that differ from what their surfaces and elasticities say; of two rules for one pair the first holds.
+    pub pairs: Vec<([BodyId; 2], PairRule)>,
 }
 
 /// A body, its law of free flight, and its state at the start.
@@ -32,7 +35,7 @@ pub struct BodyPart {
     /// Position [m] of the centre of mass, angle [rad], velocity [m/s] and angular velocity [rad/s] at the start, in the
     /// world frame; both velocities are ignored for a fixed body.
     pub state: BodyState,
-    /// What the surface does to bodies that touch it; only steps know of rolling resistance.
+    /// What the surface does to bodies that touch it.
     pub surface: Surface,
     /// Motion of a fixed body that is moved; only steps know of it. `None` for one that stays, ignored for a movable body.
     pub motion: Option<UniformMotion>,
@@ -136,13 +139,17 @@ impl RigidParts {
             let bad = |(quantity, rule, value)| PartsError::BadBody { body, quantity, rule, value };
             check_body(part).map_err(bad)?;
         }
+        for &([body, _], rule) in &self.pairs {
+            let bad = |(quantity, rule, value)| PartsError::BadBody { body, quantity, rule, value };
+            check_pair(&rule).map_err(bad)?;
+        }
         for (index, connector) in self.connectors.iter().enumerate() {
             connector.check().map_err(|source| PartsError::BadConnector { index, source })?;
         }
         self.check_names()
     }
 
-    /// Refuses connectors, laws and excluded pairs that name missing bodies.
+    /// Refuses connectors, laws and pairs that name missing bodies.
     fn check_names(&self) -> Result<(), PartsError> {
         let count = self.bodies.len();
         let check = |part, index, body| check_named(part, index, body, count);
@@ -154,6 +161,9 @@ impl RigidParts {
         }
         for (index, &(a, b)) in self.excluded.iter().enumerate() {
             [a, b].into_iter().try_for_each(|body| check("excluded pair", index, body))?;
+        }
+        for (index, &(bodies, _)) in self.pairs.iter().enumerate() {
+            bodies.into_iter().try_for_each(|body| check("pair", index, body))?;
         }
         Ok(())
     }
@@ -248,6 +258,23 @@ fn check_body(BodyPart { body, free_motion, state, surface, motion }: &BodyPart)
         return Err(("inverse moment", "positive exactly if the inverse mass is", body.inverse_moment));
     }
     Ok(())
+}
+
+fn check_pair(rule: &PairRule) -> Result<(), Broken> {
+    let or_none = |value: Option<f64>| value.unwrap_or(0.0);
+    let sizes = [
+        ("friction with its partner", or_none(rule.friction)),
+        ("static friction with its partner", or_none(rule.static_friction)),
+        ("rolling resistance with its partner", or_none(rule.rolling_resistance)),
+    ];
+    let shares = [
+        ("elasticity with its partner", or_none(rule.elasticity)),
+        ("tangential elasticity with its partner", or_none(rule.tangential_elasticity)),
+    ];
+    keep_to(&[
+        (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
+        ("between 0 and 1", |value| (0.0..=1.0).contains(&value), &shares),
+    ])
 }
 
 /// A quantity, the rule that it breaks, and its value.

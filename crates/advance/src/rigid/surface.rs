@@ -32,6 +32,13 @@ impl Surface {
     pub fn has_friction(&self) -> bool {
         self.friction > 0.0 || self.static_friction > 0.0
     }
+
+    /// True if it resists slip or rolling.
+    #[must_use]
+    #[inline]
+    pub fn resists(&self) -> bool {
+        self.has_friction() || self.rolling_resistance > 0.0
+    }
 }
 
 /// The surfaces of two bodies that touch.
@@ -84,6 +91,16 @@ pub struct RowFriction {
     pub most: f64,
     /// True if it sticks.
     pub sticks: bool,
+}
+
+/// Rolling resistance at a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct RowRolling {
+    /// Moment on the primary body [N m], counter-clockwise positive; the other one gets the opposite.
+    pub moment: f64,
+    /// Radius at which the features roll on each other [m].
+    pub radius: f64,
 }
 
 /// The geometric mean; to the bit one of the two if they are equal.

@@ -1,6 +1,6 @@
 //! Lists the rows of a step: contacts that bodies may make within it, and connectors.
 
-use crate::rigid::{PairSurface, RowForce};
+use crate::rigid::RowForce;
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::contacts::{Contact, Found, Hold, find_contacts, measure, measure_contacts};
 use crate::stepping::facing::side;
@@ -9,7 +9,9 @@ use crate::stepping::passing::FAST;
 use crate::stepping::rows::{Lengths, Line, Roll, Row, Rows, Slip, Source};
 use crate::stepping::sleep::Sleep;
 use crate::stepping::ties::Ties;
-use halfgap_collision::{BodyId, GapKinematics, Nearness, TangentRow, Touch, turned, visit_near_features};
+use halfgap_collision::{
+    BodyId, GapKinematics, Nearness, TangentRow, Touch, rolling_radius, turned, visit_near_features,
+};
 use halfgap_geometry::{GapKind, GapSample};
 
 /// Angle [rad] by which a body, or a normal, may turn in a step so that gaps are predicted to second order: beyond it the terms of
@@ -248,11 +250,14 @@ fn add_contact(
         source: Source::Contact { pair: index as u32, contact: place as u32 },
     };
     row.normal.impulse = span * contact.forces[0];
+    let features = contact.features;
+    let radii = || {
+        sides.map(|side: usize| {
+            bodies.natures[of_pair[side].index()].body.shape.feature(features[side]).radius()
+        })
+    };
     if surface.has_friction() {
-        let features = sides.map(|side: usize| {
-            bodies.natures[of_pair[side].index()].body.shape.feature(contact.features[side])
-        });
-        let radii = features.map(|feature| feature.radius());
+        let radii = radii();
         let touch = Touch { sample, radii, bodies: [primary, normal], kept_gap: target_gap };
         let speeds = sides.map(|side: usize| surface.speeds[side]);
         let tangent = TangentRow::of(&touch, &kinematics, speeds);
@@ -266,12 +271,14 @@ fn add_contact(
             elasticity: surface.tangential_elasticity,
         };
         row.slip.line.impulse = span * contact.forces[1];
-        if let Some(bound) = rolling_bound(surface, radii) {
-            row.roll = Some(rows.rolls.len() as u32);
-            let mut line = Line::new(TURNING, inertia, 0.0);
-            line.impulse = span * contact.forces[2];
-            rows.rolls.push(Roll { row: rows.all.len() as u32, line, bound });
-        }
+    }
+    if surface.rolling > 0.0
+        && let Some(radius) = rolling_radius(radii())
+    {
+        row.roll = Some(rows.rolls.len() as u32);
+        let mut line = Line::new(TURNING, inertia, 0.0);
+        line.impulse = span * contact.forces[2];
+        rows.rolls.push(Roll { row: rows.all.len() as u32, line, bound: surface.rolling * radius });
     }
     // It has come to touch without having been slowed down before.
     if row.strikes.is_none() && row.touches && !row.presses && row.rebounds() && kinematics.rate < 0.0 {
@@ -293,13 +300,4 @@ fn way_off(contact: &mut Contact, touch: &Touch<'_>, run: f64) -> f64 {
     let at = if let Hold::At(at) = contact.hold { at + run } else { now };
     contact.hold = Hold::At(at);
     now - at
-}
-
-/// Bound of the impulse against rolling [m], as a multiple of that along the normal; `None` where there is no radius to roll on.
-fn rolling_bound(surface: &PairSurface, radii: [Option<f64>; 2]) -> Option<f64> {
-    if surface.rolling == 0.0 || radii.contains(&Some(0.0)) {
-        return None;
-    }
-    let curvature: f64 = radii.iter().flatten().map(|&radius| 1.0 / radius).sum();
-    (curvature != 0.0).then(|| surface.rolling / curvature.abs())
 }

@@ -2,7 +2,7 @@
 //!
 //! *Invariant*: two bodies whose boxes overlap are listed once, unless both are fixed or they pass through each other.
 
-use crate::rigid::{PairSurface, Surface};
+use crate::rigid::{PairRules, PairSurface, Surface};
 use crate::stepping::bodies::{Bodies, Motion3, Nature};
 use crate::stepping::contacts::Contact;
 use glam::DVec2;
@@ -51,6 +51,8 @@ pub(super) struct Pairs {
     broad: BroadPhase,
     /// Pairs that pass through each other, the lesser body first, sorted.
     excluded: Vec<(BodyId, BodyId)>,
+    /// Pairs that differ from what their surfaces say.
+    rules: PairRules,
     found: Vec<BodyId>,
     /// Buffers of pairs that are no more.
     spare: Vec<Vec<Contact>>,
@@ -66,7 +68,7 @@ impl Clone for Pairs {
 
     /// Uses the buffers again.
     fn clone_from(&mut self, source: &Self) {
-        let Self { all, of_body, broad, excluded, found: _, spare: _, target_gap } = source;
+        let Self { all, of_body, broad, excluded, rules, found: _, spare: _, target_gap } = source;
         self.spare.extend(self.all.drain(all.len().min(self.all.len())..).map(|pair| pair.contacts));
         let (known, further) = all.split_at(self.all.len());
         self.all.clone_from_slice(known);
@@ -78,16 +80,21 @@ impl Clone for Pairs {
         self.of_body.clone_from(of_body);
         self.broad.clone_from(broad);
         self.excluded.clone_from(excluded);
+        self.rules.clone_from(rules);
         self.target_gap = *target_gap;
     }
 }
 
 impl Pairs {
-    pub(super) fn new(count: usize, excluded: Vec<(BodyId, BodyId)>, target_gap: f64) -> Self {
+    pub(super) fn new(
+        count: usize,
+        (excluded, rules): (Vec<(BodyId, BodyId)>, PairRules),
+        target_gap: f64,
+    ) -> Self {
         let mut excluded: Vec<_> = excluded.into_iter().map(|(a, b)| (a.min(b), a.max(b))).collect();
         excluded.sort_unstable();
         excluded.dedup();
-        Self { of_body: vec![Vec::new(); count], excluded, target_gap, ..Self::default() }
+        Self { of_body: vec![Vec::new(); count], excluded, rules, target_gap, ..Self::default() }
     }
 
     pub(super) fn excluded(&self) -> &[(BodyId, BodyId)] {
@@ -176,9 +183,10 @@ impl Pairs {
         let mut contacts = self.spare.pop().unwrap_or_default();
         contacts.clear();
         let elasticity = natures[0].body.elasticity.min(natures[1].body.elasticity);
+        let elasticity = self.rules.of([a, b]).and_then(|rule| rule.elasticity).unwrap_or(elasticity);
         self.all.push(Pair {
             bodies: [a, b],
-            surface: PairSurface::of(surfaces),
+            surface: self.rules.together([a, b], surfaces),
             elasticity,
             contacts,
             deepest: 0.0,

@@ -66,6 +66,7 @@ impl Row {
             normal: DVec2::new(x, y),
             force,
             friction: None,
+            rolling: None,
             bouncing: None,
         }
     }
@@ -83,6 +84,7 @@ impl Pair {
             normal: sample.normal,
             force,
             friction: None,
+            rolling: None,
             bouncing: None,
         }
     }
@@ -127,6 +129,7 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
                 normal: DVec2::new(x, y),
                 force,
                 friction: None,
+                rolling: None,
                 bouncing: None,
             });
         }

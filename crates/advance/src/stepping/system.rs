@@ -1,8 +1,8 @@
 //! Rigid bodies that are advanced by steps: what callers may ask and do.
 
 use crate::rigid::{
-    AdvanceError, ContactChanges, Counts, ForceLaw, ForceLaws, Handled, ImpactReport, Ledger, RigidParts,
-    RowForce, Snapshot,
+    AdvanceError, ContactChanges, Counts, ForceLaw, ForceLaws, Handled, ImpactReport, Ledger, PairRules,
+    RigidParts, RowForce, Snapshot,
 };
 use crate::stepping::bodies::Bodies;
 use crate::stepping::books::StepBooks;
@@ -50,7 +50,7 @@ impl SteppingSystem {
     pub fn new(parts: RigidParts, settings: SteppingSettings, start: Time) -> Result<Self, AdvanceError> {
         parts.check(&settings.rigid, start)?;
         settings.check()?;
-        let RigidParts { bodies, connectors, force_laws, excluded } = parts;
+        let RigidParts { bodies, connectors, force_laws, excluded, pairs } = parts;
         let count = bodies.len();
         let books = StepBooks::new(force_laws.len());
         let bodies = Bodies::new(bodies);
@@ -59,7 +59,7 @@ impl SteppingSystem {
         let scene = Scene {
             sleep,
             bodies,
-            pairs: Pairs::new(count, excluded, settings.rigid.tolerances.target_gap),
+            pairs: Pairs::new(count, (excluded, PairRules::new(pairs)), settings.rigid.tolerances.target_gap),
             ties: Ties::new(connectors),
             laws,
         };

@@ -10,10 +10,12 @@ pub(crate) mod settings;
 use self::bodies::Bodies;
 use crate::builder::{BodySpec, WorldBuilder};
 use crate::run_error::RunError;
-use crate::scene::{BodyData, EdgeData, FieldPath, ForceData, PathData, Scene, SceneError, ShapeData};
+use crate::scene::{
+    BodyData, EdgeData, FieldPath, ForceData, PairData, PathData, Scene, SceneError, ShapeData,
+};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
-use halfgap_advance::rigid::{Surface, UniformMotion};
+use halfgap_advance::rigid::{PairRule, Surface, UniformMotion};
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
 
@@ -86,7 +88,28 @@ fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
             builder.let_pass(BodyId::from_index(index), bodies.find(other));
         }
     }
+    for pair in &scene.pairs {
+        add_pair(&mut builder, pair.bodies.each_ref().map(|name| bodies.find(name)), pair);
+    }
     Ok(builder)
+}
+
+fn add_pair(builder: &mut WorldBuilder, [a, b]: [BodyId; 2], pair: &PairData) {
+    match pair.collide {
+        Some(true) => builder.let_collide(a, b),
+        Some(false) => builder.let_pass(a, b),
+        None => (),
+    }
+    let rule = PairRule {
+        friction: pair.friction,
+        static_friction: pair.static_friction,
+        elasticity: pair.elasticity,
+        rolling_resistance: pair.rolling_resistance,
+        tangential_elasticity: pair.tangential_elasticity,
+    };
+    if rule != PairRule::default() {
+        builder.set_pair(a, b, rule);
+    }
 }
 
 fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {

@@ -5,7 +5,7 @@ use crate::settings::{AdvanceBy, Stabilization, ToleranceOverrides};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
-use halfgap_advance::rigid::{FreeMotion, Scales};
+use halfgap_advance::rigid::{FreeMotion, PairRule, PairSurface, Scales};
 use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, Tolerances};
 use halfgap_geometry::{Aabb, Pose};
 use std::collections::BTreeSet;
@@ -26,12 +26,10 @@ type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
 /// Refuses what only steps simulate so far.
 fn require_events(body: &BodySpec) -> Result<(), WorldError> {
-    let needs =
-        [("rolling resistance", body.surface.rolling_resistance > 0.0), ("motion", body.motion.is_some())];
-    match needs.into_iter().find(|&(_, needs)| needs) {
-        Some((quantity, _)) => Err(WorldError::NeedsSteps { body: body.name.clone(), quantity }),
-        None => Ok(()),
+    if body.motion.is_some() {
+        return Err(WorldError::NeedsSteps { body: body.name.clone(), quantity: "motion" });
     }
+    Ok(())
 }
 
 impl WorldBuilder {
@@ -48,9 +46,7 @@ impl WorldBuilder {
             check_body(body)?;
             if self.settings.strategy == AdvanceBy::Events {
                 require_events(body)?;
-                let projects =
-                    self.settings.contacts && self.settings.stabilization == Stabilization::Projection;
-                if body.surface.has_friction() && !projects {
+                if body.surface.resists() && !self.projects() {
                     return Err(WorldError::FrictionWithoutForces { body: body.name.clone() });
                 }
             }
@@ -71,7 +67,52 @@ impl WorldBuilder {
         for &(a, b) in &self.excluded {
             self.check_bodies(&[a, b], || "let_pass".to_owned())?;
         }
+        for (bodies, rule) in &self.pairs {
+            self.check_bodies(bodies, || "set_pair".to_owned())?;
+            self.check_pair(*bodies, rule)?;
+        }
         self.check_settings()
+    }
+
+    /// True if contacts carry forces and are projected, as friction needs it in events.
+    fn projects(&self) -> bool {
+        self.settings.contacts && self.settings.stabilization == Stabilization::Projection
+    }
+
+    /// Refuses a pair that sticks less than it is held back when it slips, and numbers out of range.
+    fn check_pair(&self, bodies: [BodyId; 2], rule: &PairRule) -> Result<(), WorldError> {
+        let [Some(a), Some(b)] = bodies.map(|body| self.bodies.get(body.index())) else {
+            return Ok(());
+        };
+        let body = || a.name.clone();
+        if rule.resists() && self.settings.strategy == AdvanceBy::Events && !self.projects() {
+            return Err(WorldError::FrictionWithoutForces { body: body() });
+        }
+        let bad = |quantity, rule, value| Err(WorldError::BadNumber { body: body(), quantity, rule, value });
+        let shares = [
+            ("elasticity of a pair", rule.elasticity),
+            ("tangential elasticity of a pair", rule.tangential_elasticity),
+        ];
+        for (quantity, value) in shares {
+            if let Some(value) = value.filter(|value| !(0.0..=1.0).contains(value)) {
+                return bad(quantity, "between 0 and 1", value);
+            }
+        }
+        let sizes = [
+            ("friction of a pair", rule.friction),
+            ("static friction of a pair", rule.static_friction),
+            ("rolling resistance of a pair", rule.rolling_resistance),
+        ];
+        for (quantity, value) in sizes {
+            if let Some(value) = value.filter(|value| !(*value >= 0.0 && value.is_finite())) {
+                return bad(quantity, "finite, and not negative", value);
+            }
+        }
+        let together = rule.apply(PairSurface::of([&a.surface, &b.surface]));
+        if together.sticking < together.kinetic && rule.static_friction.is_some() {
+            return bad("static friction of a pair", "at least its friction", together.sticking);
+        }
+        Ok(())
     }
 
     fn check_settings(&self) -> Result<(), WorldError> {

@@ -20,7 +20,7 @@ use checks::world_bounds;
 use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{BodyPart, FreeMotion, RigidParts, Scales, Surface, UniformMotion};
+use halfgap_advance::rigid::{BodyPart, FreeMotion, PairRule, RigidParts, Scales, Surface, UniformMotion};
 use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
@@ -60,7 +60,7 @@ pub struct BodySpec {
     pub state: BodyState,
     /// Coefficient of restitution, 0 to 1; a pair of bodies uses the lesser.
     pub elasticity: f64,
-    /// Friction and what else the surface does; only an advance by [steps](AdvanceBy::Steps) knows of rolling resistance.
+    /// Friction and what else the surface does.
     pub surface: Surface,
     /// Motion of a fixed body that is moved; only an advance by [steps](AdvanceBy::Steps) knows of it.
     pub motion: Option<UniformMotion>,
@@ -130,6 +130,7 @@ pub struct WorldBuilder {
     forces: Vec<Arc<dyn ForceLaw>>,
     connectors: Vec<ConnectorSpec>,
     excluded: Vec<(BodyId, BodyId)>,
+    pairs: Vec<([BodyId; 2], PairRule)>,
     /// Warnings of the caller.
     warnings: Vec<String>,
 }
@@ -222,6 +223,30 @@ impl WorldBuilder {
         self.excluded.push((a, b));
     }
 
+    /// Lets two bodies collide that pass through each other so far, as those that a pin joins.
+    pub fn let_collide(&mut self, a: BodyId, b: BodyId) {
+        self.excluded.retain(|&pair| pair != (a, b) && pair != (b, a));
+    }
+
+    /// Gives two bodies a friction, an elasticity and the like of their own, instead of what they say together. Of two rules for one pair
+    /// the first holds.
+    ///
+    /// ```
+    /// use halfgap::{BodySpec, BodyState, PairRule, WorldBuilder};
+    /// use halfgap::geometry::{DVec2, Shape};
+    ///
+    /// let mut builder = WorldBuilder::default();
+    /// let cloth = builder.add(BodySpec::fixed("cloth", Shape::block(3.0, 0.1)?, DVec2::new(0.0, -0.05)));
+    /// let state = BodyState { position: DVec2::new(0.0, 0.03), ..BodyState::default() };
+    /// let ball = builder.add(BodySpec::movable("ball", Shape::disc(0.03)?, 0.2, state));
+    /// builder.set_pair(cloth, ball, PairRule { friction: Some(0.2), ..PairRule::default() });
+    /// assert!(builder.build().is_ok());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn set_pair(&mut self, a: BodyId, b: BodyId, rule: PairRule) {
+        self.pairs.push(([a, b], rule));
+    }
+
     /// Adds a warning, to be told before those of the builder.
     #[cfg(feature = "scene")]
     pub(crate) fn warn(&mut self, warning: String) {
@@ -283,6 +308,7 @@ impl WorldBuilder {
             connectors: connectors.clone(),
             force_laws: self.forces,
             excluded: self.excluded,
+            pairs: self.pairs,
         };
         let strategy = match self.settings.strategy {
             AdvanceBy::Events => Strategy::events(parts, settings, now),

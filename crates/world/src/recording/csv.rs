@@ -59,11 +59,11 @@ impl Recording {
     /// # Errors
     /// Errors of the writer.
     pub fn write_contacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let has_friction = self.contacts.iter().any(|record| record.event.contact.friction.is_some());
-        writeln!(out, "change,time [s],{FORCE_HEADER}{}", friction_header(has_friction))?;
+        let further = Further::of(self.contacts.iter().map(|record| &record.event.contact));
+        writeln!(out, "change,time [s],{FORCE_HEADER}{}", further.header())?;
         for record in &self.contacts {
             write!(out, "{},{:?},", record.change.name(), record.event.time)?;
-            self.write_force(out, &record.event.contact, has_friction)?;
+            self.write_force(out, &record.event.contact, further)?;
         }
         Ok(())
     }
@@ -73,19 +73,18 @@ impl Recording {
     /// # Errors
     /// Errors of the writer.
     pub fn write_forces_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut forces = self.frames.iter().flat_map(|frame| &frame.forces);
-        let has_friction = forces.any(|force| force.friction.is_some());
-        writeln!(out, "time [s],{FORCE_HEADER}{}", friction_header(has_friction))?;
+        let further = Further::of(self.frames.iter().flat_map(|frame| &frame.forces));
+        writeln!(out, "time [s],{FORCE_HEADER}{}", further.header())?;
         for frame in &self.frames {
             for force in &frame.forces {
                 write!(out, "{:?},", frame.time)?;
-                self.write_force(out, force, has_friction)?;
+                self.write_force(out, force, further)?;
             }
         }
         Ok(())
     }
 
-    fn write_force(&self, out: &mut dyn Write, force: &ContactForce, has_friction: bool) -> io::Result<()> {
+    fn write_force(&self, out: &mut dyn Write, force: &ContactForce, further: Further) -> io::Result<()> {
         let [primary, normal] = force.bodies.map(|body| csv_field(self.name(body)));
         let connector = force.connector.map(|id| id.0.to_string()).unwrap_or_default();
         let (point, direction) = (force.point, force.normal);
@@ -94,9 +93,14 @@ impl Recording {
         match force.friction {
             Some(friction) => {
                 let told = numbers([friction.force, friction.slip_speed, friction.cone_use()]);
-                writeln!(out, ",{},{told}", friction.mode())
+                write!(out, ",{},{told}", friction.mode())?;
             }
-            None if has_friction => writeln!(out, ",,,,"),
+            None if further.friction => write!(out, ",,,,")?,
+            None => (),
+        }
+        match force.rolling_moment {
+            Some(moment) => writeln!(out, ",{moment:?}"),
+            None if further.rolling => writeln!(out, ","),
             None => writeln!(out),
         }
     }
@@ -116,9 +120,26 @@ impl Recording {
     }
 }
 
-/// Further columns of forces where any contact has friction.
-fn friction_header(has_friction: bool) -> &'static str {
-    if has_friction { ",mode,friction_force [N],slip_speed [m/s],cone_use" } else { "" }
+/// Further columns of forces: where any contact has friction, and where any resists rolling.
+#[derive(Clone, Copy, Debug, Default)]
+struct Further {
+    friction: bool,
+    rolling: bool,
+}
+
+impl Further {
+    fn of<'a>(forces: impl Iterator<Item = &'a ContactForce>) -> Self {
+        forces.fold(Self::default(), |further, force| Self {
+            friction: further.friction || force.friction.is_some(),
+            rolling: further.rolling || force.rolling_moment.is_some(),
+        })
+    }
+
+    fn header(self) -> String {
+        let friction = if self.friction { ",mode,friction_force [N],slip_speed [m/s],cone_use" } else { "" };
+        let rolling = if self.rolling { ",rolling_moment [N m]" } else { "" };
+        format!("{friction}{rolling}")
+    }
 }
 
 /// Joins numbers by commas.

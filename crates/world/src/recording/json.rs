@@ -47,6 +47,8 @@ struct ForceJson<'a> {
     force: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     friction: Option<FrictionJson>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rolling_moment: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -142,6 +144,7 @@ impl Recording {
                 slip_speed: friction.slip_speed,
                 cone_use: friction.cone_use(),
             }),
+            rolling_moment: force.rolling_moment,
         }
     }
 

@@ -14,6 +14,7 @@ mod force;
 mod locate;
 mod nearest;
 mod one_key;
+mod pair;
 mod run_data;
 mod shape;
 mod source;
@@ -34,6 +35,7 @@ pub use field_path::{BadFieldPath, FieldPath, Step};
 pub use force::{
     ConstantData, DampingData, ForceData, GravityData, MutualGravityData, RotatingData, SpringData,
 };
+pub use pair::PairData;
 pub use run_data::{RunData, StrategyData};
 pub use shape::{
     ArcData, BlockData, DiscData, EdgeData, OutlineData, PathData, PolygonData, RingData, RoundedBlockData,
@@ -67,6 +69,9 @@ pub struct Scene {
     /// The force laws, which act on bodies.
     #[serde(default, rename = "force")]
     pub forces: Vec<ForceData>,
+    /// Pairs of bodies that differ from what their bodies say.
+    #[serde(default, rename = "pair")]
+    pub pairs: Vec<PairData>,
     /// States that a run is expected to reach.
     #[serde(default)]
     pub expected: Vec<ExpectedData>,

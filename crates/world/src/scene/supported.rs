@@ -12,6 +12,14 @@ pub(super) fn check_supported(scene: &Scene) -> Result<(), SceneError> {
     for (index, body) in scene.bodies.iter().enumerate() {
         check_body(body, &scene.run, &top.field("body").element(index))?;
     }
+    for (index, pair) in scene.pairs.iter().enumerate() {
+        let fields = [
+            ("friction", pair.friction, "friction"),
+            ("static_friction", pair.static_friction, "friction"),
+            ("rolling_resistance", pair.rolling_resistance, "rolling resistance"),
+        ];
+        check_resistance(fields, &scene.run, &top.field("pair").element(index))?;
+    }
     Ok(())
 }
 
@@ -39,33 +47,36 @@ fn check_body(body: &BodyData, run: &RunData, at: &FieldPath) -> Result<(), Scen
             ));
         }
     }
-    if run.strategy == StrategyData::Steps {
-        return Ok(());
-    }
-    let is_rough = body.friction > 0.0 || body.static_friction.is_some_and(|friction| friction > 0.0);
-    let projects = run.stabilization.unwrap_or_default() == Stabilization::Projection;
-    if is_rough && !(run.contacts && projects) {
-        let field = if run.contacts { "stabilization" } else { "contacts" };
-        let message = format!(
-            "friction needs contacts that carry forces and are projected: leave `{field}` out of `[run]`, or set `strategy` to `steps`"
-        );
-        return Err(SceneError::new(
-            at.field(if body.friction > 0.0 { "friction" } else { "static_friction" }),
-            message,
-        ));
-    }
     let fields = [
-        ("rolling_resistance", body.rolling_resistance > 0.0, "rolling resistance"),
-        ("motion", body.motion.is_some(), "a fixed body that moves"),
+        ("friction", Some(body.friction), "friction"),
+        ("static_friction", body.static_friction, "friction"),
+        ("rolling_resistance", Some(body.rolling_resistance), "rolling resistance"),
     ];
-    match fields.into_iter().find(|&(_, is_given, _)| is_given) {
-        Some((field, _, what)) => {
-            let message =
-                format!("{what} is not supported by events yet: set `strategy` to `steps` in `[run]`");
-            Err(SceneError::new(at.field(field), message))
-        }
-        None => Ok(()),
+    check_resistance(fields, run, at)?;
+    if body.motion.is_some() && run.strategy == StrategyData::Events {
+        let message =
+            "a fixed body that moves is not supported by events yet: set `strategy` to `steps` in `[run]`";
+        return Err(SceneError::new(at.field("motion"), message.to_owned()));
     }
+    Ok(())
+}
+
+/// Refuses coefficients of friction and the like, each with its field and its name, where events have no forces for them.
+fn check_resistance(
+    fields: [(&str, Option<f64>, &str); 3],
+    run: &RunData,
+    at: &FieldPath,
+) -> Result<(), SceneError> {
+    let projects = run.contacts && run.stabilization.unwrap_or_default() == Stabilization::Projection;
+    let given = fields.into_iter().find(|(_, coefficient, _)| coefficient.is_some_and(|c| c > 0.0));
+    let Some((given, _, what)) = given.filter(|_| run.strategy == StrategyData::Events && !projects) else {
+        return Ok(());
+    };
+    let field = if run.contacts { "stabilization" } else { "contacts" };
+    let message = format!(
+        "{what} needs contacts that carry forces and are projected: leave `{field}` out of `[run]`, or set `strategy` to `steps`"
+    );
+    Err(SceneError::new(at.field(given), message))
 }
 
 fn unsupported(field: FieldPath, what: &str) -> SceneError {

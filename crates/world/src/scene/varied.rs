@@ -14,7 +14,7 @@ use serde_json::{Number, Value};
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// Tables at the top of a scene that have numbers.
-const TABLES: [&str; 5] = ["run", "body", "connector", "force", "expected"];
+const TABLES: [&str; 6] = ["run", "body", "connector", "force", "pair", "expected"];
 
 /// A scene in which one number takes other values.
 #[derive(Clone, Debug)]

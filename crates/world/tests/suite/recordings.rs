@@ -231,6 +231,7 @@ fn contact(connector: Option<u32>, normal: glam::DVec2, force: f64) -> ContactFo
         normal,
         force,
         friction: None,
+        rolling_moment: None,
     }
 }
 
@@ -266,6 +267,24 @@ fn forces_and_contacts_are_written_as_tables() {
     begins,0.5,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5
     ends,0.75,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5
     "#);
+}
+
+#[test]
+fn moments_against_rolling_are_written_where_any_contact_has_one() {
+    let mut recording = with_forces(&world(&scene(1.0, "", "[0, 0]")));
+    recording.frames[0].forces.truncate(2);
+    recording.frames[0].forces[0].rolling_moment = Some(-0.5);
+    let (mut csv, mut text) = (Vec::new(), Vec::new());
+    recording.write_forces_csv(&mut csv).expect("memory takes everything");
+    insta::assert_snapshot!(String::from_utf8(csv).expect("text"), @r#"
+    time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N],rolling_moment [N m]
+    0.0,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,5.0,-0.5
+    0.0,disc,world,3,0.0,-1.0,1.0,0.0,-6.0,
+    "#);
+    recording.write_json(&mut text).expect("memory takes everything");
+    let json: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(json["frames"][0]["forces"][0]["rolling_moment"], -0.5);
+    assert!(json["frames"][0]["forces"][1].get("rolling_moment").is_none());
 }
 
 #[test]

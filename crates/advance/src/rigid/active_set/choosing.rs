@@ -1,7 +1,7 @@
 //! Which of the candidates become active rows, and at which gap.
 
 use crate::rigid::active_set::settling::Settling;
-use crate::rigid::active_set::slips::grip_of;
+use crate::rigid::active_set::slips::grips_of;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::bounces::formed_at;
@@ -65,15 +65,14 @@ pub(crate) fn choose_rows(
 ) {
     for place in 0..settling.candidates.len() {
         let index = settling.candidates[place];
-        let (grip, tangential) = grip_of(settling, index);
+        let (grips, along) = grips_of(settling, index);
         let record = &region.records()[index];
         let lifted = lifted(assembly, pairs, record);
         if lifted.is_some() {
             assembly.remedies().act(Remedy::Lifting);
         }
         settling.active.extend(
-            active_row(assembly, connectors, (record, grip, tangential), lifted, time)
-                .map(|row| (index, row)),
+            active_row(assembly, connectors, (record, grips, along), lifted, time).map(|row| (index, row)),
         );
     }
     settling.list_touches();
@@ -83,7 +82,7 @@ pub(crate) fn choose_rows(
 fn active_row(
     assembly: &Assembly,
     connectors: &Connectors,
-    (record, grip, tangential): (&Collision, Grip, f64),
+    (record, grips, [slip, turn]): (&Collision, [Grip; 2], [f64; 2]),
     lifted: Option<f64>,
     time: Time,
 ) -> Option<ActiveRow> {
@@ -97,8 +96,8 @@ fn active_row(
     // its length would move a body that hangs on it by a long arm by much more.
     let bilateral = record.parties.bilateral;
     let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
-    let load = [record.response.force.unwrap_or(0.0), tangential];
-    let row = ActiveRow { source, bodies, bilateral, gap, hint, leans: false, grip, load };
+    let load = [record.response.force.unwrap_or(0.0), slip, turn];
+    let row = ActiveRow { source, bodies, bilateral, gap, hint, leans: false, grips, load };
     Some(with_lean(assembly, connectors, row, time))
 }
 

@@ -83,9 +83,9 @@ fn let_slip(settling: &mut Settling, rest: f64) -> bool {
     let Settling { solution, slips, yielding, .. } = settling;
     let before = yielding.len();
     for slip in slips.iter().filter(|slip| slip.row.rate.abs() <= rest) {
-        let side = slip.side_in(solution, slip.surface.kinetic, 0.0);
-        let is_known = yielding.iter().any(|(record, _)| *record == slip.record);
-        yielding.extend(side.filter(|_| !is_known).map(|side| (slip.record, side)));
+        let side = slip.side_in(solution, slip.kinetic, 0.0);
+        let is_known = yielding.iter().any(|(record, axis, _)| (*record, *axis) == (slip.record, slip.axis));
+        yielding.extend(side.filter(|_| !is_known).map(|side| (slip.record, slip.axis, side)));
     }
     yielding.len() > before
 }

@@ -54,10 +54,14 @@ pub(super) fn pose_problem(
     for (place, &index) in candidates.iter().enumerate() {
         let record = &region.records()[index];
         let offset = sound(record, free_offset(region, record, stage));
-        let turn = turns.next_if(|(turned, _)| *turned == place);
+        let mut turn = turns.next_if(|(turned, _)| *turned == place).map(|(_, turn)| turn);
+        // It may slip along both axes.
+        while let Some((_, more)) = turns.next_if(|(turned, _)| *turned == place) {
+            turn = turn.map(|turn| std::array::from_fn(|k| turn[k] + more[k]));
+        }
         let Some(row) = region.row_of(record, offset) else { continue };
         let row = match turn {
-            Some((_, turn)) => region.turned(row, record, &turn),
+            Some(turn) => region.turned(row, record, &turn),
             None => row,
         };
         problem.add_row(&row).expect("a row of finite numbers on bodies of the problem");

@@ -6,6 +6,7 @@ use crate::rigid::active_set::levers::Levers;
 use crate::rigid::active_set::redundant::Redundant;
 use crate::rigid::active_set::slips::{Slip, for_each_push};
 use crate::rigid::books::report::RowForce;
+use crate::rigid::contacts::friction::Axis;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::touching::Region;
@@ -47,12 +48,12 @@ pub(crate) struct Settling {
     /// Records that are no candidates, as there are forces without them alone.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) loose: Vec<usize>,
-    /// Records whose contacts slip from now on, each to a side, as there are forces if they do.
+    /// Records whose contacts slip from now on, each along an axis to a side, as there are forces if they do.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) yielding: Vec<(usize, f64)>,
-    /// Records whose contacts have begun to slip in this event, with the side to which they do.
+    pub(super) yielding: Vec<(usize, Axis, f64)>,
+    /// Records whose contacts have begun to slip in this event, with the axis and the side to which they do.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) given_way: Vec<(usize, f64)>,
+    pub(super) given_way: Vec<(usize, Axis, f64)>,
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) excluded: Vec<Excluded>,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -69,12 +70,12 @@ pub(crate) struct Settling {
     /// which its contact was cut.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) forces: Vec<Option<f64>>,
-    /// The same along the tangents of contacts.
+    /// The same along the axes of contacts.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) along: Vec<Option<f64>>,
-    /// Contacts that were cut in the event, sorted, with their forces [N] along normal and tangent.
+    pub(super) along: Vec<[Option<f64>; 2]>,
+    /// Contacts that were cut in the event, sorted, with their forces [N] along the normal, and along both axes.
     #[cfg_attr(feature = "save", serde(skip))]
-    pub(super) ended: Vec<(Touch, [f64; 2])>,
+    pub(super) ended: Vec<(Touch, [f64; 3])>,
     /// The solver's initial guess for the candidates.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) guess: WarmStart,
@@ -151,7 +152,9 @@ impl Settling {
         if self.forces.is_empty() {
             self.guess.guess(self.candidates.iter().map(|&index| self.likely[index]));
         } else {
-            let along = |slip: &Slip| slip.number.map(|_| self.along.get(slip.record).copied().flatten());
+            let along = |slip: &Slip| {
+                slip.number.map(|_| self.along.get(slip.record).and_then(|along| along[slip.axis as usize]))
+            };
             let normal = self.candidates.iter().map(|&index| self.forces[index]);
             self.guess.guess_forces(normal.chain(self.slips.iter().filter_map(along)));
         }
@@ -166,12 +169,13 @@ impl Settling {
             self.forces[index] = Some(self.solution.force[place]);
         }
         if !self.slips.is_empty() {
-            self.along.resize(self.likely.len(), None);
+            self.along.resize(self.likely.len(), [None; 2]);
         }
         for slip in &self.slips {
             let share = slip.share();
             let of_slipping = share.map(|share| share * self.solution.force[slip.place]);
-            self.along[slip.record] = slip.number.map(|number| self.solution.force[number]).or(of_slipping);
+            self.along[slip.record][slip.axis as usize] =
+                slip.number.map(|number| self.solution.force[number]).or(of_slipping);
         }
         Ok(())
     }
@@ -205,7 +209,10 @@ impl Settling {
     /// Starts the next solve from the forces at which contacts were cut, if there were any.
     pub(crate) fn expect_forces(&mut self, region: &Region, ended: &[RowForce]) {
         self.ended.clear();
-        let forces = |row: &RowForce| [row.force, row.friction.map_or(0.0, |friction| friction.force)];
+        let forces = |row: &RowForce| {
+            let slip = row.friction.map_or(0.0, |friction| friction.force);
+            [row.force, slip, row.rolling.map_or(0.0, |rolling| rolling.moment / rolling.radius)]
+        };
         let told = |row: &RowForce| Some((Touch::new(row.bodies, row.features?), forces(row)));
         self.ended.extend(ended.iter().filter_map(told));
         if self.ended.is_empty() {
@@ -218,8 +225,8 @@ impl Settling {
             Some(self.ended[place].1)
         });
         for forces in found {
-            self.forces.push(forces.map(|[normal, _]| normal));
-            self.along.push(forces.map(|[_, along]| along));
+            self.forces.push(forces.map(|[normal, ..]| normal));
+            self.along.push(forces.map_or([None; 2], |[_, slip, turn]| [Some(slip), Some(turn)]));
         }
     }
 

@@ -2,35 +2,42 @@
 //!
 //! A contact that slips as the event begins goes on: its force along the normal is turned against the slip. One without slip
 //! has a friction row in the problem, bounded by its static coefficient; where the bound is reached it slips from then on,
-//! against its force, by its kinetic coefficient. At one time all contacts of a region are decided together.
+//! against its force, by its kinetic coefficient. At one time all contacts of a region are decided together. A contact that resists rolling does so
+//! by a friction of its own, along another axis, and has either without knowing of the other.
 
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::friction::{Grip, slip_of};
+use crate::rigid::contacts::friction::{Axis, Grip, slip_of};
+use crate::rigid::contacts::rolling::turn_of;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::ROUNDED_FORCE;
 use crate::rigid::surface::PairSurface;
-use halfgap_collision::TangentRow;
-use halfgap_contact::Solution;
+use halfgap_collision::{BodyId, Collision, TangentRow};
+use halfgap_contact::{InverseInertia, Solution};
 
 /// Share [-] by which the bounds of a problem are less than those that count. A contact that is this near its bound and slips by mistake
 /// is slowed down, and stops at once.
 const NARROWED: f64 = 1e-7;
-/// Share [-] of the largest acceleration from which a slip accelerates: between what solutions are off, and what a contact at its
-/// bound does where bounds are less by [`NARROWED`].
+/// Share [-] of the largest acceleration, or of that by the force that presses, from which a slip accelerates: between what solutions
+/// are off, and what a contact at its bound does where bounds are less by [`NARROWED`].
 const MOVES: f64 = 3e-13;
 
-/// The friction of a candidate.
+/// The friction of a candidate along an axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slip {
     /// Place of the candidate in the problem, and its record in the region.
     pub(super) place: usize,
     pub(super) record: usize,
+    pub(super) axis: Axis,
     pub(super) row: TangentRow,
-    pub(super) surface: PairSurface,
+    /// Coefficient if it slips, and that up to which it sticks [-].
+    pub(super) kinetic: f64,
+    pub(super) sticking: f64,
+    /// Acceleration along the axis by a unit of force along it [1/kg].
+    pub(super) mobility: f64,
     /// The side to which it slips, 1 or -1; `None` for one that may stick.
     pub(super) side: Option<f64>,
     /// Number of its friction row in the problem, if it has one.
@@ -40,7 +47,7 @@ pub(crate) struct Slip {
 impl Slip {
     /// Bound of the friction row, as a share of the normal force [-].
     pub(super) fn bound(&self, jumps: bool, slack: f64) -> f64 {
-        if jumps { self.surface.kinetic } else { (1.0 - slack.max(NARROWED)) * self.surface.sticking }
+        if jumps { self.kinetic } else { (1.0 - slack.max(NARROWED)) * self.sticking }
     }
 
     /// By what the direction of the force of the contact's row differs from its normal, if it slips.
@@ -49,15 +56,20 @@ impl Slip {
         Some(self.row.jacobian.map(|entry| share * entry))
     }
 
-    /// Force along the tangent as a share of that along the normal [-], of a contact that slips.
+    /// Force along the axis as a share of that along the normal [-], of a contact that slips.
     pub(super) fn share(&self) -> Option<f64> {
-        self.side.map(|side| -side * self.surface.kinetic)
+        self.side.map(|side| -side * self.kinetic)
     }
 
-    /// Side to which the contact begins to slip in a solution whose accelerations count from `least` [m/s^2] on; `None` if it
-    /// sticks.
-    fn gives_way(&self, solution: &Solution, slack: f64, least: f64) -> Option<f64> {
-        self.side_in(solution, self.bound(false, slack), least)
+    /// Side to which the contact begins to slip in a solution whose bounds are less by a share `slack` [-], for a problem whose `largest`
+    /// acceleration [m/s^2] is given; `None` if it sticks.
+    fn gives_way(&self, solution: &Solution, largest: f64, slack: f64) -> Option<f64> {
+        // A contact slips about as easily as it parts. How easily it rolls depends on its radius, which may be as small as can be.
+        let scale = match self.axis {
+            Axis::Slip => largest,
+            Axis::Turn => self.mobility * solution.force[self.place],
+        };
+        self.side_in(solution, self.bound(false, slack), MOVES * scale)
     }
 
     /// Side to which the contact goes in a solution at its bound, given as a share of the normal force [-], by more than `least`.
@@ -83,20 +95,56 @@ pub(super) fn list_slips(
         return;
     }
     let rest = assembly.rest_speed().max(2.0 * speed_of_stopped(assembly, connectors, region));
-    slips.extend(candidates.iter().enumerate().filter_map(|(place, &index)| {
-        let (row, surface) = slip_of(assembly, connectors, &region.records()[index])?;
-        let given = given_way.iter().find(|(record, _)| *record == index).map(|(_, side)| *side);
-        let side = given.or_else(|| (row.rate.abs() > rest).then(|| row.rate.signum())).filter(|_| !*jumps);
-        Some(Slip { place, record: index, row, surface, side, number: None })
-    }));
+    for (place, &record) in candidates.iter().enumerate() {
+        slips.extend(Axis::ALL.into_iter().filter_map(|axis| {
+            let resistance = resistance_of(assembly, connectors, &region.records()[record], axis)?;
+            let (row, [kinetic, sticking]) = resistance;
+            let mobility = mobility(assembly, &region.records()[record], &row);
+            let given = side_given(given_way, record, axis);
+            let side = given.or_else(|| (row.rate.abs() > rest).then(|| row.rate.signum()));
+            let side = side.filter(|_| !*jumps);
+            Some(Slip { place, record, axis, row, kinetic, sticking, mobility, side, number: None })
+        }));
+    }
+}
+
+/// The motion along an axis at a contact's record, and the kinetic and the static coefficient by which the contact resists it [-]; `None`
+/// where it does not.
+fn resistance_of(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    record: &Collision,
+    axis: Axis,
+) -> Option<(TangentRow, [f64; 2])> {
+    match axis {
+        Axis::Slip => slip_of(assembly, connectors, record)
+            .map(|(row, PairSurface { kinetic, sticking, .. })| (row, [kinetic, sticking])),
+        Axis::Turn => turn_of(assembly, connectors, record).map(|(row, coefficient)| (row, [coefficient; 2])),
+    }
+}
+
+/// Acceleration along a row between the bodies of a record by a unit of force along it [1/kg].
+fn mobility(assembly: &Assembly, record: &Collision, row: &TangentRow) -> f64 {
+    let of_side = |(side, body): (usize, BodyId)| {
+        let InverseInertia { inverse_mass, inverse_moment } = assembly.inertia(body);
+        let [x, y, turning] = [0, 1, 2].map(|k: usize| row.jacobian[3 * side + k]);
+        inverse_mass * (x * x + y * y) + inverse_moment * turning * turning
+    };
+    record.bodies().into_iter().enumerate().map(of_side).sum()
+}
+
+/// The side to which a record's contact has begun to slip along an axis in this event, if it has.
+fn side_given(given_way: &[(usize, Axis, f64)], record: usize, axis: Axis) -> Option<f64> {
+    given_way.iter().find(|&&(other, along, _)| (other, along) == (record, axis)).map(|&(_, _, side)| side)
 }
 
 /// Slip speed [m/s] that is left of a contact whose slip has come to a stop, by the error of the step that led there; 0 if the event
 /// is another.
 fn speed_of_stopped(assembly: &Assembly, connectors: &Connectors, region: &Region) -> f64 {
-    let Cause::Stopped(stopped, _) = region.cause() else { return 0.0 };
+    let Cause::Stopped(stopped, axis, _) = region.cause() else { return 0.0 };
     let record = region.records().iter().find(|record| Touch::of(record) == Some(stopped));
-    record.and_then(|record| slip_of(assembly, connectors, record)).map_or(0.0, |(row, _)| row.rate.abs())
+    let resistance = record.and_then(|record| resistance_of(assembly, connectors, record, axis));
+    resistance.map_or(0.0, |(row, _)| row.rate.abs())
 }
 
 /// Lets contacts slip whose friction has reached its bound; true if any of them has a kinetic coefficient below its static one:
@@ -111,11 +159,11 @@ pub(super) fn give_way(region: &Region, settling: &mut Settling) -> bool {
     let mut is_new = false;
     for slip in slips.iter().filter(|slip| slip.side.is_none()) {
         let record = slip.record;
-        let Some(side) = slip.gives_way(solution, *slack, MOVES * largest) else { continue };
-        let stopped = region.cause().stopped(region.records()[record].bodies());
+        let Some(side) = slip.gives_way(solution, largest, *slack) else { continue };
+        let stopped = region.cause().stopped(region.records()[record].bodies(), slip.axis);
         if stopped != Some(side > 0.0) {
-            given_way.push((record, side));
-            is_new |= slip.surface.kinetic < slip.surface.sticking;
+            given_way.push((record, slip.axis, side));
+            is_new |= slip.kinetic < slip.sticking;
         }
     }
     is_new
@@ -125,27 +173,29 @@ pub(super) fn give_way(region: &Region, settling: &mut Settling) -> bool {
 pub(super) fn all_stick(settling: &Settling) -> bool {
     let Settling { slips, solution, problem, slack, .. } = settling;
     let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    slips.iter().all(|slip| slip.gives_way(solution, *slack, MOVES * largest).is_none())
+    slips.iter().all(|slip| slip.gives_way(solution, largest, *slack).is_none())
 }
 
-/// What friction does at the row of a candidate's record, and its force [N] along the tangent.
-pub(super) fn grip_of(settling: &Settling, record: usize) -> (Grip, f64) {
-    let Ok(found) = settling.slips.binary_search_by_key(&record, |slip| slip.record) else {
-        return (Grip::Smooth, 0.0);
-    };
-    let slip = &settling.slips[found];
-    let force = slip.number.and_then(|number| settling.solution.force.get(number)).copied().unwrap_or(0.0);
-    let given = settling.given_way.iter().find(|(other, _)| *other == record).map(|(_, side)| *side);
-    match slip.side.or(given) {
-        Some(side) => {
-            let left = if given.is_some() { slip.row.rate } else { 0.0 };
-            (Grip::Slips { side, coefficient: slip.surface.kinetic, left }, 0.0)
-        }
-        None => (Grip::Sticks { coefficient: slip.surface.sticking, anchor: None }, force),
+/// What friction does at the row of a candidate's record along each axis, and the force [N] of one that sticks.
+pub(super) fn grips_of(settling: &Settling, record: usize) -> ([Grip; 2], [f64; 2]) {
+    let (mut grips, mut forces) = ([Grip::Smooth; 2], [0.0; 2]);
+    let first = settling.slips.partition_point(|slip| slip.record < record);
+    for slip in settling.slips[first..].iter().take_while(|slip| slip.record == record) {
+        let place = slip.axis as usize;
+        let force = slip.number.and_then(|number| settling.solution.force.get(number)).copied();
+        let given = side_given(&settling.given_way, record, slip.axis);
+        (grips[place], forces[place]) = match slip.side.or(given) {
+            Some(side) => {
+                let left = if given.is_some() { slip.row.rate } else { 0.0 };
+                (Grip::Slips { side, coefficient: slip.kinetic, left }, 0.0)
+            }
+            None => (Grip::Sticks { coefficient: slip.sticking, anchor: None }, force.unwrap_or(0.0)),
+        };
     }
+    (grips, forces)
 }
 
-/// Adds the forces along tangents to accelerations of the region's bodies, as `push` does.
+/// Adds the forces of friction to accelerations of the region's bodies, as `push` does.
 pub(super) fn for_each_push(settling: &Settling, mut push: impl FnMut(usize, &[f64; 6], f64)) {
     for slip in &settling.slips {
         let force = &settling.solution.force;

@@ -6,7 +6,7 @@ use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::shares::SMALL;
-use crate::rigid::surface::Surface;
+use crate::rigid::surfaces::Surfaces;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Moving};
@@ -37,8 +37,8 @@ pub(crate) struct Assembly {
     pub(super) force_laws: ForceLaws,
     /// True if some masses differ beyond the ratio that can be held together.
     pub(super) masses_are_extreme: bool,
-    /// Surface of each body; none of any if all are smooth.
-    pub(super) surfaces: Vec<Surface>,
+    /// The surfaces of all bodies.
+    pub(super) surfaces: Surfaces,
     /// True if nothing but contacts and connectors accelerates bodies.
     pub(super) is_forceless: bool,
     /// Time at which the system started.
@@ -69,7 +69,7 @@ impl Assembly {
             remedies: Remedies::new(settings.without),
             is_fixed: trajectories.iter().map(|trajectory| trajectory.body().is_fixed()).collect(),
             masses_are_extreme: false,
-            surfaces: Vec::new(),
+            surfaces: Surfaces::default(),
             is_forceless: force_laws.all.is_empty()
                 && trajectories.iter().all(|trajectory| trajectory.free_motion().acceleration == DVec2::ZERO),
             trajectories,
@@ -96,21 +96,20 @@ impl Assembly {
         &self.remedies
     }
 
-    /// The same with surfaces, one of each body.
-    pub(crate) fn with_surfaces(self, surfaces: Vec<Surface>) -> Self {
-        let any_friction = surfaces.iter().any(Surface::has_friction);
-        Self { surfaces: if any_friction { surfaces } else { Vec::new() }, ..self }
+    /// The same with surfaces.
+    pub(crate) fn with_surfaces(self, surfaces: Surfaces) -> Self {
+        Self { surfaces, ..self }
     }
 
-    /// True if any body has a surface with friction.
+    /// True if there is friction or rolling resistance between any bodies.
     #[inline]
     pub(crate) fn any_friction(&self) -> bool {
-        !self.surfaces.is_empty()
+        self.surfaces.any_resists()
     }
 
-    /// Surface of each body; none of any if all are smooth.
+    /// The surfaces of all bodies.
     #[inline]
-    pub(crate) fn surfaces(&self) -> &[Surface] {
+    pub(crate) fn surfaces(&self) -> &Surfaces {
         &self.surfaces
     }
 

@@ -4,7 +4,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::RowForce;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::friction::Grip;
+use crate::rigid::contacts::friction::{Axis, Grip};
 use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::groups::Groups;
@@ -52,34 +52,60 @@ fn told_rows<'a>(
     let anchors = group.rows().len() + group.spare_anchors();
     let mut bounds = vec![0.0; if group.is_rough() { anchors } else { 0 }];
     for (row, force) in with_spares() {
-        if let Grip::Sticks { coefficient, anchor: Some(anchor) } = row.grip {
-            bounds[anchor as usize] += coefficient * force;
+        for (anchor, coefficient) in row.kept_by() {
+            bounds[anchor] += coefficient * force;
         }
     }
     let along = move |anchor: usize| {
         forces.get(anchor).copied().unwrap_or_else(|| group.spares()[anchor - forces.len()].load[0])
     };
     with_spares().filter(|(row, _)| !is_anchor(row)).map(move |(row, &force)| {
-        let friction = match row.grip {
+        // Of what an anchor bears, a contact has the share of what it may bear.
+        let shared = |most: f64, anchor: usize| {
+            let share = if bounds[anchor] > 0.0 { most / bounds[anchor] } else { 0.0 };
+            share * along(anchor)
+        };
+        let friction = match row.grip(Axis::Slip) {
             Grip::Slips { side, coefficient, .. } => row.touch().map(|_| {
                 let sides = row.bodies.map(|body| moving_of(movings, body));
                 let most = coefficient * force;
-                let slip_speed = mechanism.slip_speed(row, sides);
+                let slip_speed = mechanism.slip_speed(row, Axis::Slip, sides);
                 RowFriction { force: -side * most, slip_speed, most, sticks: false }
             }),
             Grip::Sticks { coefficient, anchor: Some(anchor) } => {
-                let (most, anchor) = (coefficient * force, anchor as usize);
-                let share = if bounds[anchor] > 0.0 { most / bounds[anchor] } else { 0.0 };
-                Some(RowFriction { force: share * along(anchor), slip_speed: 0.0, most, sticks: true })
+                let most = coefficient * force;
+                Some(RowFriction {
+                    force: shared(most, anchor as usize),
+                    slip_speed: 0.0,
+                    most,
+                    sticks: true,
+                })
             }
             _ => None,
         };
+        let turning = match row.grip(Axis::Turn) {
+            Grip::Sticks { coefficient, anchor: Some(anchor) } => {
+                shared(coefficient * force, anchor as usize)
+            }
+            _ => 0.0,
+        };
+        let rolling = mechanism.told_rolling(row, force, turning);
         let (point, normal) = mechanism.locate(row, movings);
         let (connector, features) = match row.source {
             RowSource::Connector(id, _) => (Some(id), None),
             RowSource::Contact(features) | RowSource::Anchor(features) => (None, Some(features)),
         };
-        RowForce { bodies: row.bodies, connector, features, point, normal, force, friction, bouncing: None }
+        RowForce {
+            bodies: row.bodies,
+            connector,
+            features,
+            point,
+            normal,
+            force,
+            friction,
+            rolling,
+            bouncing: None,
+        }
     })
 }
 

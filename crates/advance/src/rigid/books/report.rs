@@ -1,7 +1,7 @@
 //! Reports that callers may ask for: forces of rows, contacts that begin and end.
 
 use crate::rigid::error::AdvanceError;
-use crate::rigid::surface::RowFriction;
+use crate::rigid::surface::{RowFriction, RowRolling};
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{BodyId, BodyState, Collision, ConnectorId};
@@ -25,6 +25,8 @@ pub struct RowForce {
     pub force: f64,
     /// Friction at a contact whose surfaces have some.
     pub friction: Option<RowFriction>,
+    /// Rolling resistance at a contact whose surfaces have some.
+    pub rolling: Option<RowRolling>,
     /// Duration [s] of the geometric series of bounces, too slow to be resolved, that would have followed under
     /// constant acceleration, of a contact that begins with an impact; `None` where there is no such series.
     pub bouncing: Option<f64>,
@@ -231,6 +233,7 @@ mod tests {
             normal: DVec2::Y,
             force: 1.0,
             friction: None,
+            rolling: None,
             bouncing: None,
         }
     }

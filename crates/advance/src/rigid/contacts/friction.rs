@@ -2,34 +2,50 @@
 //!
 //! In the plane a contact that sticks is holonomic: its slip is the rate of a coordinate, which a row of its own keeps as a
 //! pin keeps its gap. A contact that slips has no such row: its friction is a share of its force along the normal.
+//!
+//! Rolling resistance is another such friction of the same contact, along another axis: in `rolling` it is written as a force, too.
 
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowMoment, RowSource, mechanism, source_of};
-use crate::rigid::surface::{PairSurface, RowFriction, Surface};
+use crate::rigid::surface::{PairSurface, RowFriction};
 use halfgap_collision::{self as collision, BodyId, Collision, GapKinematics, Moving, TangentRow, turned};
 use halfgap_geometry::{FeatureId, GapSample};
 
-/// What friction does at an active row.
+/// Along what friction acts at a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Axis {
+    /// The normal turned by +90 degrees, along which the bodies slip.
+    Slip,
+    /// Their relative rotation, by the radius at which they roll on each other.
+    Turn,
+}
+
+impl Axis {
+    pub(crate) const ALL: [Self; 2] = [Self::Slip, Self::Turn];
+}
+
+/// What friction does at an active row along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Grip {
     /// Nothing.
     #[default]
     Smooth,
-    /// The contact slips to a side, 1 or -1: its force along the tangent is the coefficient [-] times that along the normal, to
+    /// The contact slips to a side, 1 or -1: its force along the axis is the coefficient [-] times that along the normal, to
     /// the other side. Of a contact that sets out from rest the event has left the speed `left` [m/s], by rounding.
     Slips { side: f64, coefficient: f64, left: f64 },
-    /// The contact sticks: the force along its tangent is no more than the coefficient [-] times that along its normal. In a
+    /// The contact sticks: the force along the axis is no more than the coefficient [-] times that along its normal. In a
     /// group a row of its own, the anchor, keeps it, or shares the anchor of another.
     Sticks { coefficient: f64, anchor: Option<u32> },
-    /// The row is an anchor, of a contact that keeps this gap [m]. Beyond what the contacts of its group allow, its force may be as
+    /// The row is an anchor along an axis, of a contact that keeps this gap [m]. Beyond what the contacts of its group allow, its force may be as
     /// large as the bound [N].
-    Anchor { kept_gap: f64, bound: f64 },
+    Anchor { axis: Axis, kept_gap: f64, bound: f64 },
 }
 
 impl Grip {
-    /// The share [-] of the normal force that acts along the tangent; `None` where the contact does not slip.
+    /// The share [-] of the normal force that acts along the axis; `None` where the contact does not slip.
     #[inline]
     pub(crate) fn slip_share(self) -> Option<f64> {
         match self {
@@ -40,29 +56,62 @@ impl Grip {
 }
 
 impl ActiveRow {
-    /// Lets a contact that sticks be kept by the anchor at a place in its group.
-    pub(crate) fn keep_by(&mut self, place: u32) {
-        if let Grip::Sticks { anchor, .. } = &mut self.grip {
+    /// What friction does at it along an axis.
+    #[inline]
+    pub(crate) fn grip(&self, axis: Axis) -> Grip {
+        self.grips[axis as usize]
+    }
+
+    /// True if friction acts at it.
+    #[inline]
+    pub(crate) fn is_rough(&self) -> bool {
+        self.grips != [Grip::Smooth; 2]
+    }
+
+    /// True if it slips along any axis.
+    #[inline]
+    pub(crate) fn slips(&self) -> bool {
+        self.grips.iter().any(|grip| grip.slip_share().is_some())
+    }
+
+    /// What an anchor bears beyond what its contacts allow [N]; `None` for other rows.
+    #[inline]
+    pub(crate) fn anchor_bound(&self) -> Option<f64> {
+        if let Grip::Anchor { bound, .. } = self.grips[0] { Some(bound) } else { None }
+    }
+
+    /// The anchors by which a contact is kept, each with the coefficient [-] up to which it is.
+    #[inline]
+    pub(crate) fn kept_by(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
+        self.grips.into_iter().filter_map(|grip| match grip {
+            Grip::Sticks { coefficient, anchor: Some(anchor) } => Some((anchor as usize, coefficient)),
+            _ => None,
+        })
+    }
+
+    /// Lets a contact that sticks along an axis be kept by the anchor at a place in its group.
+    pub(crate) fn keep_by(&mut self, axis: Axis, place: u32) {
+        if let Grip::Sticks { anchor, .. } = &mut self.grips[axis as usize] {
             *anchor = Some(place);
         }
     }
 
-    /// Adds a contact's force [N] along its tangent to an anchor.
+    /// Adds a contact's force [N] along an axis to its anchor.
     pub(crate) fn add_load(&mut self, force: f64) {
         self.load[0] += force;
     }
 
     /// Raises the bound of an anchor [N].
     pub(crate) fn raise_bound(&mut self, force: f64) {
-        if let Grip::Anchor { bound, .. } = &mut self.grip {
+        if let Grip::Anchor { bound, .. } = &mut self.grips[0] {
             *bound += force;
         }
     }
 
     /// Friction at a contact as the event found it; `None` where there is none.
     pub(crate) fn told_friction(&self) -> Option<RowFriction> {
-        let [normal, along] = self.load;
-        match self.grip {
+        let [normal, along, _] = self.load;
+        match self.grip(Axis::Slip) {
             Grip::Slips { side, coefficient, .. } => {
                 let most = coefficient * normal;
                 Some(RowFriction { force: -side * most, slip_speed: 0.0, most, sticks: false })
@@ -76,16 +125,6 @@ impl ActiveRow {
 }
 
 impl Mechanism<'_> {
-    /// Surface of a body.
-    pub(crate) fn surface(&self, body: BodyId) -> &Surface {
-        self.surfaces.get(body.index()).unwrap_or(&Surface::SMOOTH)
-    }
-
-    /// The surfaces of two bodies together.
-    pub(crate) fn surface_of(&self, bodies: [BodyId; 2]) -> PairSurface {
-        PairSurface::of(bodies.map(|body| self.surface(body)))
-    }
-
     /// Gap and slip of a contact, which keeps a gap [m].
     pub(crate) fn measure_slip(
         &self,
@@ -100,14 +139,17 @@ impl Mechanism<'_> {
     /// Gap and slip of two bodies that touch like this.
     fn slip_at(&self, bodies: [BodyId; 2], touch: &collision::Touch<'_>) -> (RowMoment, TangentRow) {
         let kinematics = GapKinematics::of(touch.sample, touch.bodies[0], touch.bodies[1]);
-        let slip = TangentRow::of(touch, &kinematics, bodies.map(|body| self.surface(body).velocity));
+        let slip = TangentRow::of(touch, &kinematics, bodies.map(|body| self.surfaces.speed(body)));
         (RowMoment { gap: touch.sample.gap, kinematics }, slip)
     }
 
-    /// Slip speed [m/s] of a contact's row; 0 of others.
-    pub(crate) fn slip_speed(&self, row: &ActiveRow, movings: [&Moving; 2]) -> f64 {
+    /// Speed [m/s] of a contact's row along an axis; 0 of others.
+    pub(crate) fn slip_speed(&self, row: &ActiveRow, axis: Axis, movings: [&Moving; 2]) -> f64 {
         let RowSource::Contact(features) = row.source else { return 0.0 };
-        self.measure_slip((row.bodies, features), movings, row.gap).1.rate
+        match axis {
+            Axis::Slip => self.measure_slip((row.bodies, features), movings, row.gap).1.rate,
+            Axis::Turn => self.turning((row.bodies, features), movings).rate,
+        }
     }
 
     /// The anchor of a contact: its coordinate [m], with the slip as its rate. `near` [m] is a value of the coordinate near the
@@ -125,7 +167,7 @@ impl Mechanism<'_> {
         let (moment, TangentRow { rate, jacobian, gamma }) = self.slip_at(bodies, &touch);
         let kinematics = GapKinematics { rate, jacobian, gamma, ..moment.kinematics };
         // A surface that runs has no place to return to.
-        if bodies.iter().any(|&body| self.surface(body).velocity != 0.0) {
+        if bodies.iter().any(|&body| self.surfaces.speed(body) != 0.0) {
             return RowMoment { gap: near, kinematics };
         }
         let [ra, rb] = touch.inflated();
@@ -144,17 +186,23 @@ impl Mechanism<'_> {
         collision::Touch { sample, radii, bodies: movings, kept_gap }
     }
 
-    /// The anchor of a contact that sticks, as a row beside the contact's own.
-    pub(crate) fn anchor_of(&self, row: &ActiveRow, movings: [&Moving; 2]) -> Option<ActiveRow> {
-        let (RowSource::Contact(features), Grip::Sticks { .. }) = (row.source, row.grip) else { return None };
-        let gap = self.measure_anchor((row.bodies, features), movings, row.gap, 0.0).gap;
-        let grip = Grip::Anchor { kept_gap: row.gap, bound: 0.0 };
+    /// The anchor along an axis of a contact that sticks, as a row beside the contact's own.
+    pub(crate) fn anchor_of(&self, row: &ActiveRow, axis: Axis, movings: [&Moving; 2]) -> Option<ActiveRow> {
+        let (RowSource::Contact(features), Grip::Sticks { .. }) = (row.source, row.grip(axis)) else {
+            return None;
+        };
+        let contact = (row.bodies, features);
+        let gap = match axis {
+            Axis::Slip => self.measure_anchor(contact, movings, row.gap, 0.0).gap,
+            Axis::Turn => self.measure_turn(contact, movings).gap,
+        };
+        let grips = [Grip::Anchor { axis, kept_gap: row.gap, bound: 0.0 }, Grip::Smooth];
         Some(ActiveRow {
             source: RowSource::Anchor(features),
             bilateral: true,
             gap,
-            grip,
-            load: [0.0; 2],
+            grips,
+            load: [0.0; 3],
             ..*row
         })
     }
@@ -166,8 +214,12 @@ impl Mechanism<'_> {
         features: [FeatureId; 2],
         movings: [&Moving; 2],
     ) -> RowMoment {
-        let kept_gap = if let Grip::Anchor { kept_gap, .. } = row.grip { kept_gap } else { row.gap };
-        self.measure_anchor((row.bodies, features), movings, kept_gap, row.gap)
+        let contact = (row.bodies, features);
+        match row.grips[0] {
+            Grip::Anchor { axis: Axis::Turn, .. } => self.measure_turn(contact, movings),
+            Grip::Anchor { kept_gap, .. } => self.measure_anchor(contact, movings, kept_gap, row.gap),
+            _ => self.measure_anchor(contact, movings, row.gap, row.gap),
+        }
     }
 }
 
@@ -179,7 +231,7 @@ pub(crate) fn slip_of(
 ) -> Option<(TangentRow, PairSurface)> {
     let Some(RowSource::Contact(features)) = source_of(record) else { return None };
     let (bodies, mechanism) = (record.bodies(), mechanism(assembly, connectors));
-    let surface = mechanism.surface_of(bodies);
+    let surface = mechanism.surfaces.together(bodies);
     if !surface.has_friction() {
         return None;
     }

@@ -5,7 +5,7 @@ use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::touch::Touch;
-use crate::rigid::surface::Surface;
+use crate::rigid::surfaces::Surfaces;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
@@ -24,7 +24,7 @@ pub(crate) const CHANGE_SHARE: f64 = 1.0 / 64.0;
 pub(crate) enum RowSource {
     /// A feature of the primary and one of the normal body.
     Contact([FeatureId; 2]),
-    /// The slip of a contact that sticks, of a feature of the primary and one of the normal body.
+    /// The slip, or the rolling, of a contact that sticks, of a feature of the primary and one of the normal body.
     Anchor([FeatureId; 2]),
     /// A row of a connector, by its index there.
     Connector(ConnectorId, usize),
@@ -44,10 +44,10 @@ pub(crate) struct ActiveRow {
     pub(crate) hint: Option<RailHint>,
     /// It is a corner, sharp or round, that leans off its line.
     pub(crate) leans: bool,
-    /// What friction does at it.
-    pub(crate) grip: Grip,
-    /// Forces [N] that the event found along the normal, of an anchor along the tangent; and of a contact along its tangent.
-    pub(crate) load: [f64; 2],
+    /// What friction does at it, by [`Axis`]; of an anchor the first.
+    pub(crate) grips: [Grip; 2],
+    /// Forces [N] that the event found along the normal, of an anchor along its axis; and of a contact along its axes.
+    pub(crate) load: [f64; 3],
 }
 
 /// A row at one moment.
@@ -62,8 +62,8 @@ pub(crate) struct RowMoment {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mechanism<'a> {
     pub(crate) trajectories: &'a [Trajectory],
-    /// Surface of each body; none of any if all are smooth.
-    pub(crate) surfaces: &'a [Surface],
+    /// The surfaces of all bodies.
+    pub(crate) surfaces: &'a Surfaces,
     pub(crate) connectors: &'a [Connector],
     pub(crate) tolerances: &'a Tolerances,
 }

@@ -141,10 +141,10 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
             handle_impact(rooms, work)
         }
         SegmentEnd::Stop(id) => meet_stop(rooms, work, id),
-        SegmentEnd::SlipStop(row) => {
+        SegmentEnd::SlipStop(row, axis) => {
             let row = &group.rows()[row];
-            if let (Some(touch), Grip::Slips { side, .. }) = (row.touch(), row.grip) {
-                work.region.set_cause(Cause::Stopped(touch, side > 0.0));
+            if let (Some(touch), Grip::Slips { side, .. }) = (row.touch(), row.grip(axis)) {
+                work.region.set_cause(Cause::Stopped(touch, axis, side > 0.0));
             }
             handle_change(rooms, work)
         }

@@ -47,7 +47,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
     let fired = work.region.cause().fired().map(|touch| (touch, work.fired_open));
     note_seen(&rooms.assembly, &mut rooms.pairs, touching, fired);
     let outcome = regroup(rooms, &work.region, &work.settling);
-    note_begins(&rooms.assembly, &mut rooms.books, &work.region, &work.settling);
+    note_begins(&rooms.assembly, &rooms.connectors, &mut rooms.books, &work.region, &work.settling);
     outcome?;
     set_rules(&rooms.assembly, &mut rooms.pairs, &mut rooms.search, &rooms.groups, work);
     let insists = rooms.zeno.last_insistent().is_some_and(|last| is_same_time(last, rooms.assembly.now()));

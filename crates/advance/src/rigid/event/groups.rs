@@ -89,8 +89,8 @@ fn list_idle(
             let gap = assembly.refire_gap(gap.distance);
             let source = RowSource::Contact(touch.features);
             let bodies = touch.bodies;
-            let (hint, leans, grip) = (None, false, Grip::Smooth);
-            let row = ActiveRow { source, bodies, bilateral: false, gap, hint, leans, grip, load: [0.0; 2] };
+            let (hint, leans, grips) = (None, false, [Grip::Smooth; 2]);
+            let row = ActiveRow { source, bodies, bilateral: false, gap, hint, leans, grips, load: [0.0; 3] };
             group.add_idle(with_lean(assembly, connectors, row, assembly.now()));
         }
     }

@@ -19,6 +19,7 @@ use crate::rigid::search::neighbourhood::Neighbourhood;
 use crate::rigid::search::searching::Searching;
 use crate::rigid::settings::RigidSettings;
 use crate::rigid::sinking::depth::Sinking;
+use crate::rigid::surfaces::{PairRules, Surfaces};
 use crate::rigid::zeno::memory::Zeno;
 use crate::time::Time;
 use halfgap_collision::{BodyId, Moving};
@@ -55,11 +56,19 @@ impl Rooms {
         // Steps know contacts and uniform accelerations only; bodies that go from steps to groups with more are not sound yet.
         let is_plain = parts.connectors.is_empty()
             && parts.force_laws.is_empty()
-            && parts.bodies.iter().all(|part| !part.free_motion.is_damped());
+            && !parts
+                .pairs
+                .iter()
+                .any(|(_, rule)| rule.rolling_resistance.is_some_and(|rolling| rolling > 0.0))
+            && parts
+                .bodies
+                .iter()
+                .all(|part| !part.free_motion.is_damped() && part.surface.rolling_resistance == 0.0);
         let region_steps = settings.region_steps.filter(|_| is_plain);
         let settings = RigidSettings { region_steps, ..settings };
-        let RigidParts { bodies, connectors, force_laws, excluded } = parts;
+        let RigidParts { bodies, connectors, force_laws, excluded, pairs } = parts;
         let surfaces = bodies.iter().map(|part| part.surface).collect();
+        let surfaces = Surfaces::new(surfaces, PairRules::new(pairs));
         let trajectory =
             |BodyPart { body, free_motion, state, .. }| Trajectory::new(body, free_motion, state, start);
         let trajectories: Vec<Trajectory> = bodies.into_iter().map(trajectory).collect();

@@ -4,16 +4,24 @@ use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::RowForce;
-use crate::rigid::contacts::rows::{ActiveRow, RowSource};
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowSource, mechanism};
 use crate::rigid::region::touching::Region;
 use halfgap_collision::Collision;
 
 /// Notes the unilateral rows that are active from now on.
-pub(crate) fn note_begins(assembly: &Assembly, books: &mut Books, region: &Region, settling: &Settling) {
+pub(crate) fn note_begins(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    books: &mut Books,
+    region: &Region,
+    settling: &Settling,
+) {
+    let mechanism = mechanism(assembly, connectors);
     for (index, row) in settling.active().iter().filter(|(_, row)| !row.bilateral) {
         let told = RowForce {
             bouncing: bouncing(assembly, books, region, settling),
-            ..told_of(&region.records()[*index], row)
+            ..told_of(&mechanism, &region.records()[*index], row)
         };
         books.begin_contact(told);
     }
@@ -38,7 +46,7 @@ fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Sett
     (elasticity < 1.0).then(|| 2.0 * elasticity * closing / (acceleration * (1.0 - elasticity)))
 }
 
-fn told_of(record: &Collision, row: &ActiveRow) -> RowForce {
+fn told_of(mechanism: &Mechanism<'_>, record: &Collision, row: &ActiveRow) -> RowForce {
     let features = match row.source {
         RowSource::Contact(features) | RowSource::Anchor(features) => Some(features),
         RowSource::Connector(..) => None,
@@ -51,6 +59,7 @@ fn told_of(record: &Collision, row: &ActiveRow) -> RowForce {
         normal: record.geometry.normal,
         force: record.response.force.unwrap_or(0.0),
         friction: row.told_friction(),
+        rolling: mechanism.told_rolling(row, row.load[0], row.load[2]),
         bouncing: None,
     }
 }

@@ -4,6 +4,7 @@
 //! (J M^-1 J^T) f = -(J v'_0 + gamma), v'_0 being the acceleration without them; then v' = v'_0 + M^-1 J^T f.
 
 use crate::ode::Ode;
+use crate::rigid::contacts::friction::Axis;
 use crate::rigid::contacts::rows::{RowSource, moving_of};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::stage::Stage;
@@ -137,14 +138,18 @@ impl Dynamics<'_> {
             if let RowSource::Contact(features) = row.source {
                 let Stage { movings, slipping, .. } = &mut *self.stage;
                 let movings = row.bodies.map(|body| moving_of(movings, body));
-                let moment = match row.grip.slip_share() {
+                let contact = (row.bodies, features);
+                let moment = match row.grip(Axis::Slip).slip_share() {
                     None => mechanism.measure_contact(row.bodies, features, movings),
                     Some(share) => {
-                        let (moment, slip) = mechanism.measure_slip((row.bodies, features), movings, row.gap);
+                        let (moment, slip) = mechanism.measure_slip(contact, movings, row.gap);
                         slipping.add(index, &slip, share);
                         moment
                     }
                 };
+                if let Some(share) = row.grip(Axis::Turn).slip_share() {
+                    slipping.add(index, &mechanism.turning(contact, movings), share);
+                }
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             } else {
                 let moment = mechanism.measure_next(row, &self.stage.movings, &mut twin);

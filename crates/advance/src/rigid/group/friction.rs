@@ -2,10 +2,10 @@
 //! powers of both.
 //!
 //! A contact that sticks has a further row, its anchor, which is an equation as any. A contact that slips has the force
-//! D^T f with D = J_n + s J_t, s its share: C M^-1 D^T f = -(C v' + gamma), and `TurnedRows` solves that with the symmetric
+//! D^T f with D = J_n + s J_t, s its share along an axis: C M^-1 D^T f = -(C v' + gamma), and `TurnedRows` solves that with the symmetric
 //! factor of C M^-1 C^T.
 
-use crate::rigid::contacts::friction::Grip;
+use crate::rigid::contacts::friction::{Axis, Grip};
 use crate::rigid::contacts::rows::{ActiveRow, Mechanism};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::Stage;
@@ -19,8 +19,8 @@ use halfgap_contact::TurnedRows;
 pub(crate) struct Slipping {
     /// Row of each one, and by what the direction of its force differs from its normal.
     turns: Vec<(u32, [f64; 6])>,
-    /// Slip speed [m/s] of each one, and its share.
-    slips: Vec<(f64, f64)>,
+    /// For each axis of each one its row, its speed [m/s] along it, and its share.
+    slips: Vec<(u32, f64, f64)>,
     turned: TurnedRows,
 }
 
@@ -30,10 +30,15 @@ impl Slipping {
         self.slips.clear();
     }
 
+    /// Adds what a contact's row does along an axis along which it slips, the rows in their order.
     pub(super) fn add(&mut self, row: usize, slip: &TangentRow, share: f64) {
         let row = u32::try_from(row).unwrap_or(u32::MAX);
-        self.turns.push((row, slip.jacobian.map(|entry| share * entry)));
-        self.slips.push((slip.rate, share));
+        let turn = slip.jacobian.map(|entry| share * entry);
+        match self.turns.last_mut().filter(|(other, _)| *other == row) {
+            Some((_, sum)) => sum.iter_mut().zip(turn).for_each(|(sum, entry)| *sum += entry),
+            None => self.turns.push((row, turn)),
+        }
+        self.slips.push((row, slip.rate, share));
     }
 
     /// By what the direction of the force of the only row differs from its normal, if it slips.
@@ -69,18 +74,16 @@ impl Dynamics<'_> {
         for (power, work) in powers.iter_mut().zip(works) {
             match *work {
                 Work::Friction(row) => {
-                    let place = slipping.turns.iter().position(|(other, _)| *other == row);
-                    *power = place.map_or(0.0, |place| {
-                        let (speed, share) = slipping.slips[place];
-                        share * forces[row as usize] * speed
-                    });
+                    let own = slipping.slips.iter().filter(|(other, ..)| *other == row);
+                    let heat = own.map(|(_, speed, share)| share * forces[row as usize] * speed);
+                    *power = heat.reduce(|sum, heat| sum + heat).unwrap_or(0.0);
                 }
                 Work::Surfaces => {
                     let of_row = |(row, force): (&ActiveRow, &f64)| {
-                        let share = match row.grip {
-                            Grip::Anchor { .. } => 1.0,
+                        let share = match row.grip(Axis::Slip) {
+                            Grip::Anchor { axis: Axis::Slip, .. } => 1.0,
                             Grip::Slips { side, coefficient, .. } => -side * coefficient,
-                            Grip::Smooth | Grip::Sticks { .. } => return 0.0,
+                            Grip::Smooth | Grip::Sticks { .. } | Grip::Anchor { .. } => return 0.0,
                         };
                         share * force * self.physics.mechanism.running_speed(row)
                     };
@@ -95,7 +98,7 @@ impl Dynamics<'_> {
 impl Mechanism<'_> {
     /// Sum of the speeds [m/s] at which the surfaces of a contact run.
     pub(crate) fn running_speed(&self, row: &ActiveRow) -> f64 {
-        row.bodies.iter().map(|&body| self.surface(body).velocity).sum()
+        row.bodies.iter().map(|&body| self.surfaces.speed(body)).sum()
     }
 }
 
@@ -139,11 +142,16 @@ impl Dynamics<'_> {
         if !self.group.is_rough() || self.group.rows.len() < 2 {
             return false;
         }
-        let Group { rows, active, prescribed, .. } = &mut *self.group;
-        if (0..rows.len()).any(|index| active.is_dependent(index)) {
-            prescribed.extend(rows.iter().zip(0..).map(|(row, index)| (index, row.load[0])));
+        let Group { rows, active, spares, .. } = &*self.group;
+        if !(0..rows.len()).any(|index| active.is_dependent(index)) {
+            return false;
         }
-        !prescribed.is_empty()
+        // What locks bear for spare rows is no part of the motion.
+        let stress = if spares.is_empty() { vec![0.0; rows.len()] } else { self.find_stress() };
+        let own = rows.iter().zip(stress).map(|(row, stress)| row.load[0] - stress);
+        let own: Vec<_> = (0..).zip(own).collect();
+        self.group.prescribed.extend(own);
+        true
     }
 
     /// Notes what spare rows add to the forces of locks, which are those at the group's start.

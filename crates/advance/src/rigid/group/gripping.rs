@@ -6,7 +6,7 @@
 //! they add to those of the others, hold each other where they act, and turn along with the bodies, they stay as they are until
 //! the group ends.
 
-use crate::rigid::contacts::friction::Grip;
+use crate::rigid::contacts::friction::{Axis, Grip};
 use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowSource};
 use crate::rigid::forest::Forest;
 use crate::rigid::group::state::{Group, Work};
@@ -17,28 +17,33 @@ use halfgap_collision::{BodyId, BodyState, Moving};
 impl Group {
     /// Adds anchors and works of friction, and sets spare rows aside. `state_of` tells where a body is.
     pub(crate) fn add_friction(&mut self, mechanism: &Mechanism<'_>, state_of: impl Fn(BodyId) -> BodyState) {
-        if self.rows.iter().all(|row| row.grip == Grip::Smooth) {
+        if !self.is_rough() {
             return;
         }
         let moving_of = |body: BodyId| {
             if body.is_world() { Moving::BACKGROUND } else { Moving::from(&state_of(body)) }
         };
-        self.add_anchors(mechanism, moving_of);
+        Axis::ALL.into_iter().for_each(|axis| self.add_anchors(mechanism, axis, moving_of));
         self.set_spares_aside(mechanism, moving_of);
         for (index, row) in self.rows.iter().enumerate() {
-            if row.grip.slip_share().is_some() {
+            if row.slips() {
                 self.works.push(Work::Friction(number(index)));
             }
         }
-        let runs = |row: &ActiveRow| row.grip != Grip::Smooth && mechanism.running_speed(row) != 0.0;
+        let runs = |row: &ActiveRow| row.is_rough() && mechanism.running_speed(row) != 0.0;
         if self.rows.iter().any(runs) {
             self.works.push(Work::Surfaces);
         }
     }
 
-    /// Adds the anchors of contacts that stick; contacts of the same two bodies and of one slip share theirs.
-    fn add_anchors(&mut self, mechanism: &Mechanism<'_>, moving_of: impl Fn(BodyId) -> Moving + Copy) {
-        let sticks = |row: &ActiveRow| matches!(row.grip, Grip::Sticks { .. });
+    /// Adds the anchors of contacts that stick along an axis; contacts of the same two bodies and of one slip share theirs.
+    fn add_anchors(
+        &mut self,
+        mechanism: &Mechanism<'_>,
+        axis: Axis,
+        moving_of: impl Fn(BodyId) -> Moving + Copy,
+    ) {
+        let sticks = |row: &ActiveRow| matches!(row.grip(axis), Grip::Sticks { .. });
         let mut contacts: Vec<([BodyId; 2], usize)> = (0..self.rows.len())
             .filter(|&index| sticks(&self.rows[index]))
             .map(|index| (sorted(self.rows[index].bodies), index))
@@ -49,15 +54,17 @@ impl Group {
             for &(_, index) in chunk {
                 let row = self.rows[index];
                 let movings = row.bodies.map(moving_of);
-                let Some(anchor) = mechanism.anchor_of(&row, [&movings[0], &movings[1]]) else { continue };
+                let Some(anchor) = mechanism.anchor_of(&row, axis, [&movings[0], &movings[1]]) else {
+                    continue;
+                };
                 let shared = (first..self.rows.len())
                     .find(|&other| mechanism.is_same_anchor(&self.rows[other], &anchor, moving_of));
                 let place = shared.unwrap_or(self.rows.len());
                 if shared.is_none() {
                     self.rows.push(anchor);
                 }
-                self.rows[place].add_load(row.load[1]);
-                self.rows[index].keep_by(number(place));
+                self.rows[place].add_load(row.load[1 + axis as usize]);
+                self.rows[index].keep_by(axis, number(place));
             }
         }
     }
@@ -108,8 +115,8 @@ impl Group {
         // An anchor bears what the contacts may that it keeps, spare ones, too.
         for contact in (0..is_spare.len()).filter(|&row| is_spare[row]) {
             let row = self.rows[contact];
-            if let Grip::Sticks { coefficient, anchor: Some(anchor) } = row.grip {
-                self.rows[anchor as usize].raise_bound(coefficient * row.load[0]);
+            for (anchor, coefficient) in row.kept_by() {
+                self.rows[anchor].raise_bound(coefficient * row.load[0]);
             }
         }
         let mut of_locks = locks.into_iter().zip(&is_spare).filter(|(_, is_spare)| !**is_spare);
@@ -135,8 +142,10 @@ impl Group {
         self.spares.extend(self.rows.extract_if(.., |_| flags.next() == Some(&true)));
         self.spares.sort_by_key(|row| !is_anchor(row));
         for row in self.rows.iter_mut().chain(&mut self.spares) {
-            if let Grip::Sticks { anchor: Some(anchor), .. } = row.grip {
-                row.keep_by(new_places[anchor as usize]);
+            for axis in Axis::ALL {
+                if let Grip::Sticks { anchor: Some(anchor), .. } = row.grip(axis) {
+                    row.keep_by(axis, new_places[anchor as usize]);
+                }
             }
         }
     }
@@ -152,15 +161,18 @@ enum Bears {
     Pressure,
     /// Those up to a bound.
     Friction,
+    /// Moments up to a bound: a contact that keeps a body from turning is watched until it opens, and must not be spare beside them.
+    Rolling,
 }
 
 impl ActiveRow {
     /// What the row bears, if it can be one of a lock: a joint, a contact that does not slip, or an anchor.
     fn bears(&self) -> Option<Bears> {
-        match self.source {
-            RowSource::Connector(..) => self.is_joint().then_some(Bears::Anything),
-            RowSource::Contact(_) => self.grip.slip_share().is_none().then_some(Bears::Pressure),
-            RowSource::Anchor(_) => Some(Bears::Friction),
+        match (self.source, self.grips[0]) {
+            (RowSource::Connector(..), _) => self.is_joint().then_some(Bears::Anything),
+            (RowSource::Contact(_), _) => (!self.slips()).then_some(Bears::Pressure),
+            (RowSource::Anchor(_), Grip::Anchor { axis: Axis::Turn, .. }) => Some(Bears::Rolling),
+            (RowSource::Anchor(_), _) => Some(Bears::Friction),
         }
     }
 }
@@ -309,6 +321,19 @@ mod tests {
         for row in group.rows().iter().zip(group.forces()).filter(|(row, _)| row.touch().is_some()) {
             assert!(*row.1 > 1.0 && (row.1 - row.0.load[0]).abs() < 1e-6, "{row:?}");
         }
+    }
+
+    #[test]
+    fn what_resists_rolling_locks_a_disc_and_is_spare_where_a_body_lies_flat() {
+        let gap = FINE.tolerances.target_gap;
+        let resisting = |shape| {
+            let surface = Surface { rolling_resistance: 0.1, ..ROUGH };
+            BodyPart { surface, ..part(shape, false, 0.0, 0.5 + gap) }
+        };
+        assert_eq!(counts(&rooms(vec![floor(), resisting(Shape::disc(0.5))])), [1, 2, 0, 0]);
+        // Both round corners turn as one.
+        let block = resisting(Shape::rounded_block(1.0, 1.0, 0.2));
+        assert_eq!(counts(&rooms(vec![floor(), block])), [2, 1, 0, 1]);
     }
 
     #[test]

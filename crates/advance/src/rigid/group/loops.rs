@@ -58,8 +58,8 @@ mod tests {
             gap: 0.0,
             hint: None,
             leans: false,
-            grip: Grip::Smooth,
-            load: [0.0; 2],
+            grips: [Grip::Smooth; 2],
+            load: [0.0; 3],
         };
         let rows: Vec<_> =
             (0..ends.len()).flat_map(|connector| [row(connector, 0), row(connector, 1)]).collect();

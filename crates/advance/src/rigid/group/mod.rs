@@ -5,7 +5,7 @@
 //!
 //! * data: `state` (a group), `reading`, `making` (its members), `gripping` (what friction adds), `turning` (from one segment to the next), `groups` (all of
 //!   them), `stage` (buffers of one moment), `lending`, `samples`;
-//! * equations of motion: `physics`, `dynamics` in bodies, `friction`, `level`, `tree` in angles where bodies hang together by pins;
+//! * equations of motion: `physics`, `dynamics` in bodies, `friction`, `stress` of what is locked, `level`, `tree` in angles where bodies hang together by pins;
 //!   `on_rows` moves stages onto rows that depend on each other; `singular` leads steps over the bifurcation points of
 //!   closed `loops`;
 //! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures` and `inner`; its
@@ -41,6 +41,7 @@ pub(super) mod state;
 pub(super) mod stepping;
 pub(super) mod stiff;
 pub(super) mod stiffness;
+mod stress;
 pub(super) mod tools;
 pub(super) mod tree;
 pub(super) mod turning;

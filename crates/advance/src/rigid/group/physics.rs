@@ -7,7 +7,7 @@ use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::rows::Mechanism;
 use crate::rigid::remedies::Remedies;
 use crate::rigid::settings::{ExtraAcceleration, RigidSettings, StepControl};
-use crate::rigid::surface::Surface;
+use crate::rigid::surfaces::Surfaces;
 use halfgap_collision::{Connector, Moving};
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub(crate) struct Physics<'a> {
 impl<'a> Physics<'a> {
     /// The physics of a system with these parts.
     pub(crate) fn of(
-        (trajectories, surfaces): (&'a [Trajectory], &'a [Surface]),
+        (trajectories, surfaces): (&'a [Trajectory], &'a Surfaces),
         connectors: &'a [Connector],
         force_laws: &'a [Arc<dyn ForceLaw>],
         (settings, remedies): (&'a RigidSettings, &'a Remedies),

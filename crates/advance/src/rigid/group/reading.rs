@@ -2,7 +2,6 @@
 
 use crate::ode::SegmentPolynomial;
 use crate::rigid::connectors::store::Stop;
-use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::state::{Group, SegmentEnd, Work};
 use crate::rigid::group::stiffness::Stiffness;
@@ -122,12 +121,12 @@ impl Group {
 
     /// True if friction acts at any of its rows.
     pub(crate) fn is_rough(&self) -> bool {
-        self.rows.iter().any(|row| row.grip != Grip::Smooth)
+        self.rows.iter().any(ActiveRow::is_rough)
     }
 
     /// True if a contact of it slips.
     pub(crate) fn slips(&self) -> bool {
-        self.rows.iter().any(|row| row.grip.slip_share().is_some())
+        self.rows.iter().any(ActiveRow::slips)
     }
 
     /// True if forces of its rows are not unique, and shared as the event found them.
@@ -137,7 +136,7 @@ impl Group {
 
     /// Number of spare anchors, which come first among the spare rows.
     pub(crate) fn spare_anchors(&self) -> usize {
-        self.spares.iter().take_while(|row| matches!(row.grip, Grip::Anchor { .. })).count()
+        self.spares.iter().take_while(|row| row.anchor_bound().is_some()).count()
     }
 
     /// Rows that follow from others, each with its forces.

@@ -2,6 +2,7 @@
 
 use crate::ode::{Accepted, SegmentPolynomial};
 use crate::rigid::connectors::store::Stop;
+use crate::rigid::contacts::friction::Axis;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::loops::Loops;
 use crate::rigid::group::singular::Kept;
@@ -39,8 +40,8 @@ pub(crate) enum SegmentEnd {
     Stop(ConnectorId),
     /// A force law changes branch.
     Switch,
-    /// The slip of a contact stops.
-    SlipStop(usize),
+    /// The slip of a contact along an axis stops.
+    SlipStop(usize, Axis),
 }
 
 /// Bodies with a common segment.

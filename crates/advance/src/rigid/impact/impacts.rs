@@ -144,8 +144,7 @@ fn write_report(
     }
     for (record, slip) in region.records().iter().zip(impact.friction()) {
         let Some((friction, impulse)) = slip.filter(|(_, impulse)| *impulse != 0.0) else { continue };
-        let running: f64 =
-            record.bodies().iter().map(|body| assembly.surfaces()[body.index()].velocity).sum();
+        let running: f64 = record.bodies().iter().map(|&body| assembly.surfaces().speed(body)).sum();
         let after = rate_along(assembly, record, &friction.jacobian, time);
         report.add_friction(0.5 * impulse * (friction.rate + running + after), impulse * running);
     }

@@ -1,5 +1,6 @@
 //! The cause of an event.
 
+use crate::rigid::contacts::friction::Axis;
 use crate::rigid::contacts::touch::{Touch, sorted};
 use halfgap_collision::{BodyId, ConnectorId};
 
@@ -16,8 +17,8 @@ pub(crate) enum Cause {
     RunOff(Touch),
     /// A contact has lost its force: a small force found on it now may come from the motion of other bodies meanwhile.
     Released(Touch),
-    /// The slip of a contact has come to a stop; it went to the positive side or not.
-    Stopped(Touch, bool),
+    /// The slip of a contact along an axis has come to a stop; it went to the positive side or not.
+    Stopped(Touch, Axis, bool),
     /// The steps of a group have become endlessly short while its contacts slip: their forces grow beyond all bounds.
     Collapsed,
     /// Sunk contacts are put back, where contacts carry impulses only.
@@ -40,9 +41,9 @@ impl Cause {
         if let Self::RunOff(touch) = self { Some(touch) } else { None }
     }
 
-    /// The side to which the slip between two bodies went that has come to a stop, if one has: true for the positive one.
-    pub(crate) fn stopped(self, bodies: [BodyId; 2]) -> Option<bool> {
-        let Self::Stopped(touch, is_positive) = self else { return None };
-        (touch.bodies == sorted(bodies[0], bodies[1])).then_some(is_positive)
+    /// The side to which the slip between two bodies along an axis went that has come to a stop, if one has: true for the positive one.
+    pub(crate) fn stopped(self, bodies: [BodyId; 2], axis: Axis) -> Option<bool> {
+        let Self::Stopped(touch, along, is_positive) = self else { return None };
+        (touch.bodies == sorted(bodies[0], bodies[1]) && along == axis).then_some(is_positive)
     }
 }

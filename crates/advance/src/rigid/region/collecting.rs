@@ -159,6 +159,7 @@ fn collect_pair(view: &View<'_>, region: &mut Region, [first, second]: &[Moment<
             fresh.extend(record.filter(|record| fired == Some(*known) || is_near(record)));
         }
     }
+    view.assembly.surfaces().set_elasticity(bodies, &mut fresh);
     for record in &mut fresh {
         record.must_handle |= fired.is_some() && touch_of(record, bodies) == fired;
     }

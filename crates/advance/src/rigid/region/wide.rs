@@ -134,6 +134,7 @@ fn collect_near(
     let mut fresh = std::mem::take(&mut region.fresh);
     fresh.clear();
     detect_features_of_pair(a, b, &tolerances, depth, now.seconds(), &mut fresh);
+    assembly.surfaces().set_elasticity([a.id, b.id], &mut fresh);
     fresh.retain(|record| record.geometry.outside <= JOINED * steps.slack);
     let sunk = |record: &Collision| record.geometry.distance < target_gap - LARGE * steps.slack;
     for index in (0..fresh.len()).rev() {

@@ -1,7 +1,6 @@
 //! Margins of a group's rows: how much force each may lose before an event. A contact's is its force; an anchor's is what the
-//! contacts that it keeps may bear along their tangents, less its force.
+//! contacts that it keeps may bear along its axis, less its force.
 
-use crate::rigid::contacts::friction::Grip;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::Group;
 
@@ -10,18 +9,18 @@ use crate::rigid::group::state::Group;
 pub(super) fn list_margins(group: &Group, forces: &[f64], least: &[f64], margins: &mut Vec<f64>) {
     let rows = group.rows();
     margins.clear();
-    margins.extend(rows.iter().zip(forces).zip(least).map(|((row, force), least)| match row.grip {
-        Grip::Anchor { bound, .. } => least + bound - force.abs(),
-        _ if row.bilateral => f64::INFINITY,
-        _ => force + least,
-    }));
-    margins.extend(group.spares().iter().map_while(|row| match row.grip {
-        Grip::Anchor { bound, .. } => Some(bound - row.load[0].abs()),
-        _ => None,
-    }));
+    margins.extend(rows.iter().zip(forces).zip(least).map(
+        |((row, force), least)| match row.anchor_bound() {
+            Some(bound) => least + bound - force.abs(),
+            None if row.bilateral => f64::INFINITY,
+            None => force + least,
+        },
+    ));
+    let spares = group.spares().iter();
+    margins.extend(spares.map_while(|row| Some(row.anchor_bound()? - row.load[0].abs())));
     for (row, force) in rows.iter().zip(forces) {
-        if let Grip::Sticks { coefficient, anchor: Some(anchor) } = row.grip {
-            margins[anchor as usize] += coefficient * force;
+        for (anchor, coefficient) in row.kept_by() {
+            margins[anchor] += coefficient * force;
         }
     }
 }

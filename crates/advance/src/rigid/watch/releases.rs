@@ -4,7 +4,6 @@
 //! which none can happen. The segment is searched up to its end or to the event found otherwise, in one part, or in as
 //! many as the forces ask for.
 
-use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
@@ -144,8 +143,7 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
         };
         let mut margin = [bound - force.abs(), bound - low.abs().max(high.abs()), high - low];
         for (contact, row) in rows.iter().enumerate() {
-            let Grip::Sticks { coefficient, anchor } = row.grip else { continue };
-            if anchor == u32::try_from(index).ok() {
+            for (_, coefficient) in row.kept_by().filter(|&(anchor, _)| anchor == index) {
                 let [least, largest] = range(contact);
                 margin[0] += coefficient * forces[contact];
                 margin[1] += coefficient * least;
@@ -156,10 +154,7 @@ pub(crate) fn firm_part(dynamics: &Dynamics<'_>) -> Option<f64> {
     };
     let spare_anchors = &group.spares()[..group.spare_anchors()];
     let anchors = rows.iter().chain(spare_anchors).enumerate();
-    let anchors = anchors.filter_map(|(index, row)| match row.grip {
-        Grip::Anchor { bound, .. } => of_anchor(index, row, bound),
-        _ => None,
-    });
+    let anchors = anchors.filter_map(|(index, row)| of_anchor(index, row, row.anchor_bound()?));
     let contacts = rows.iter().enumerate().filter_map(of_contact);
     contacts.chain(anchors).min_by(f64::total_cmp)
 }

@@ -1,6 +1,6 @@
 //! Slips that come to a stop within a group's segment: the speed of a contact that slips falls to zero along the dense output.
 
-use crate::rigid::contacts::friction::Grip;
+use crate::rigid::contacts::friction::{Axis, Grip};
 use crate::rigid::contacts::rows::moving_of;
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::samples::NODES;
@@ -10,17 +10,28 @@ use crate::rigid::watch::earliest::Earliest;
 use crate::rigid::watch::early_ends::{Watch, fill, find_first};
 
 /// Watch for slips that stop.
-const STOPS: Watch = Watch {
+const SLIPS: Watch = Watch {
     place: |dynamics, offset| dynamics.place_at(offset),
     place_for: |dynamics, _, offset| dynamics.place_at(offset),
-    read: |dynamics, row| slip_at(dynamics, row),
+    read: |dynamics, row| slip_at(dynamics, row, Axis::Slip),
     genuine: |_, _, offset| Some(offset),
-    end: SegmentEnd::SlipStop,
+    end: |row| SegmentEnd::SlipStop(row, Axis::Slip),
+};
+/// Watch for bodies that stop rolling.
+const TURNS: Watch = Watch {
+    read: |dynamics, row| slip_at(dynamics, row, Axis::Turn),
+    end: |row| SegmentEnd::SlipStop(row, Axis::Turn),
+    ..SLIPS
 };
 
-/// Offers the first stop of a slip. One that sets out has no speed yet.
+/// Offers the first stop of a slip along any axis. One that sets out has no speed yet.
 pub(super) fn find_slip_stop(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest) {
-    if !dynamics.group.rows().iter().any(|row| row.grip.slip_share().is_some()) {
+    find_stop_along(dynamics, earliest, Axis::Slip, &SLIPS);
+    find_stop_along(dynamics, earliest, Axis::Turn, &TURNS);
+}
+
+fn find_stop_along(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest, axis: Axis, watch: &Watch) {
+    if !dynamics.group.rows().iter().any(|row| row.grip(axis).slip_share().is_some()) {
         return;
     }
     let mut samples = dynamics.stage.lend_force_samples();
@@ -29,18 +40,18 @@ pub(super) fn find_slip_stop(dynamics: &mut Dynamics<'_>, earliest: &mut Earlies
     for index in 0..NODES {
         dynamics.place_at(node(index, all.to));
         for (row, sample) in samples.iter_mut().enumerate() {
-            let speed = slip_at(dynamics, row);
+            let speed = slip_at(dynamics, row, axis);
             sample[index] = if index == 0 { speed.max(0.0) } else { speed };
         }
     }
-    find_first(dynamics, earliest, (&samples, all), &STOPS);
+    find_first(dynamics, earliest, (&samples, all), watch);
     dynamics.stage.take_back_force_samples(samples);
 }
 
-/// Speed [m/s] of a contact to the side to which it slips, with the bodies in place; infinite for other rows.
-fn slip_at(dynamics: &Dynamics<'_>, row: usize) -> f64 {
+/// Speed [m/s] of a contact along an axis to the side to which it slips, with the bodies in place; infinite for other rows.
+fn slip_at(dynamics: &Dynamics<'_>, row: usize, axis: Axis) -> f64 {
     let row = &dynamics.group.rows()[row];
-    let Grip::Slips { side, left, .. } = row.grip else { return f64::INFINITY };
+    let Grip::Slips { side, left, .. } = row.grip(axis) else { return f64::INFINITY };
     let movings = row.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
-    side * (dynamics.physics.mechanism.slip_speed(row, movings) - left)
+    side * (dynamics.physics.mechanism.slip_speed(row, axis, movings) - left)
 }

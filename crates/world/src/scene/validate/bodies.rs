@@ -3,7 +3,7 @@
 use super::{At, Names, each, optional, shape};
 use crate::scene::body::WORLD;
 use crate::scene::error::SceneError;
-use crate::scene::{BodyData, MotionData, Vector};
+use crate::scene::{BodyData, MotionData, PairData, Vector};
 use std::collections::BTreeMap;
 
 /// Collects the names of all bodies, and checks that they are not empty, not reserved, and unique.
@@ -58,13 +58,21 @@ pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Resul
     })
 }
 
-/// Refuses pairs that would stick less than they are held back when they slip: of each pair, the geometric means count.
-pub(super) fn validate_static_friction(bodies: &[BodyData], at: &At<'_>) -> Result<(), SceneError> {
+/// Refuses pairs that would stick less than they are held back when they slip: of each pair, the geometric means count, unless
+/// it has coefficients of its own.
+pub(super) fn validate_static_friction(
+    (bodies, pairs): (&[BodyData], &[PairData]),
+    at: &At<'_>,
+) -> Result<(), SceneError> {
     let of = |body: &BodyData| [body.static_friction.unwrap_or(body.friction), body.friction];
     let low = bodies.iter().enumerate().filter(|(_, body)| of(body)[0] < of(body)[1]);
     for (index, body) in low {
         let ([sticks, slips], others) = (of(body), bodies.iter().enumerate());
-        let mut others = others.filter(|&(other, _)| other != index);
+        let has_own = |other: &BodyData| {
+            let own = pairs.iter().find(|pair| pair.is_of(&body.name, &other.name));
+            own.is_some_and(|pair| pair.friction.or(pair.static_friction).is_some())
+        };
+        let mut others = others.filter(|&(other, body)| other != index && !has_own(body));
         let is_less = |&(_, other): &(usize, &BodyData)| sticks * of(other)[0] < slips * of(other)[1];
         if let Some((_, other)) = others.find(is_less) {
             let name = &other.name;

@@ -5,6 +5,7 @@ mod check;
 mod connectors;
 mod expected;
 mod forces;
+mod pairs;
 mod run;
 mod shape;
 
@@ -29,9 +30,15 @@ pub(super) fn validate_world(scene: &Scene) -> Result<(), SceneError> {
     validate_run(&scene.run)?;
     let names = bodies::collect_names(&scene.bodies, &top.field("body"))?;
     each(&top.field("body"), &scene.bodies, |body, at| bodies::validate(body, &names, at))?;
-    bodies::validate_static_friction(&scene.bodies, &top.field("body"))?;
+    bodies::validate_static_friction((&scene.bodies, &scene.pairs), &top.field("body"))?;
     each(&top.field("connector"), &scene.connectors, |one, at| connectors::validate(one, &names, at))?;
-    each(&top.field("force"), &scene.forces, |one, at| forces::validate(one, &names, at))
+    each(&top.field("force"), &scene.forces, |one, at| forces::validate(one, &names, at))?;
+    let at = top.field("pair");
+    let check = |index: usize| {
+        let (before, pair) = (&scene.pairs[..index], &scene.pairs[index]);
+        pairs::validate(pair, (before, &scene.bodies), &names, &at.element(index))
+    };
+    (0..scene.pairs.len()).try_for_each(check)
 }
 
 /// Checks the table `[run]`.

@@ -10,6 +10,7 @@ use crate::rigid::group::stage::{Stage, set_body_state};
 use crate::rigid::group::state::Group;
 use crate::rigid::remedies::{Remedies, RemedySet};
 use crate::rigid::shares::{ROUNDED_FORCE, SMALL, TINY};
+use crate::rigid::surfaces::Surfaces;
 use crate::rigid::test_scene::FINE;
 use crate::time::Time;
 use glam::DVec2;
@@ -134,8 +135,8 @@ impl Scene {
                 gap: 0.0,
                 hint,
                 leans,
-                grip: Grip::Smooth,
-                load: [0.0; 2],
+                grips: [Grip::Smooth; 2],
+                load: [0.0; 3],
             };
             self.group.rows.push(row);
         }
@@ -157,7 +158,8 @@ impl Scene {
         for (place, trajectory) in trajectories.iter().enumerate() {
             set_body_state(&mut group.state, count, place, &trajectory.state_at(Time::ZERO));
         }
-        let mechanism = Mechanism { trajectories, surfaces: &[], connectors, tolerances: &TOLERANCES };
+        let surfaces = &Surfaces::default();
+        let mechanism = Mechanism { trajectories, surfaces, connectors, tolerances: &TOLERANCES };
         let remedies = &Remedies::new(RemedySet::NONE);
         let physics =
             Physics { mechanism, force_laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };
