@@ -40,6 +40,11 @@ impl FrictionMethods {
         recognised.solve(&mut self.modes, force)
     }
 
+    /// Solves by Lemke's method alone; false if it finds no answer.
+    pub(crate) fn solve_by_lemke(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
+        self.lemke.solve(problem, solution).is_ok()
+    }
+
     /// Solves by modes; else by Lemke's method, which may prove that there is no solution; else by trying all modes.
     pub(crate) fn solve(
         &mut self,

@@ -11,9 +11,9 @@ use crate::rigid::shares::ROUNDED;
 use halfgap_collision::Collision;
 use halfgap_contact::Jump;
 
-/// Moment over which impulses are sought, as a share of the time scale of the scene [-]: forces give a velocity in it that
-/// solutions can tell from rounding, and no other.
-const MOMENT: f64 = 1e-7;
+/// Moments over which impulses are sought, as shares of the time scale of the scene [-]. In the first, forces give a velocity that
+/// solutions can tell from rounding, and no other. In the second, forces that are larger than all others by far stop a slip.
+const MOMENTS: [f64; 2] = [1e-7, 1e-4];
 
 /// What follows where the candidates have no forces.
 #[derive(Debug)]
@@ -33,7 +33,32 @@ pub(crate) fn find_way_on<'a>(
     settling: &'a mut Settling,
     stage: &mut Stage,
 ) -> WayOn<'a> {
-    let Some(impulses) = find_impulses(view, region, settling, stage) else { return WayOn::Nothing };
+    for share in MOMENTS {
+        match find_within(view, region, settling, stage, share) {
+            Found::Jump => return WayOn::Jump(&settling.pushed),
+            Found::FewerSticks => return WayOn::FewerSticks,
+            Found::Nothing => {}
+        }
+    }
+    WayOn::Nothing
+}
+
+/// What a moment tells; a jump has left the changes of velocities in `pushed`.
+enum Found {
+    Jump,
+    FewerSticks,
+    Nothing,
+}
+
+/// Finds the way on by the impulses over a moment, given as a share of the time scale.
+fn find_within(
+    view: &View<'_>,
+    region: &Region,
+    settling: &mut Settling,
+    stage: &mut Stage,
+    share: f64,
+) -> Found {
+    let Some(impulses) = find_impulses(view, region, settling, stage, share) else { return Found::Nothing };
     let of_forces = std::mem::replace(&mut settling.solution.force, impulses);
     let mut changes = std::mem::take(&mut settling.pushed);
     changes.clear();
@@ -42,12 +67,12 @@ pub(crate) fn find_way_on<'a>(
     settling.pushed = changes;
     let rest = view.assembly.rest_speed();
     if settling.slips.iter().any(|slip| change_of(region, slip, &settling.pushed).abs() > rest) {
-        return WayOn::Jump(&settling.pushed);
+        return Found::Jump;
     }
     settling.solution.force = of_forces;
     let any_opens = drop_loose(settling);
     let any_slips = let_slip(settling, rest);
-    if any_opens || any_slips { WayOn::FewerSticks } else { WayOn::Nothing }
+    if any_opens || any_slips { Found::FewerSticks } else { Found::Nothing }
 }
 
 /// Change of the slip speed [m/s] of a candidate by those of the velocities of the region's bodies.
@@ -97,6 +122,7 @@ fn find_impulses(
     region: &Region,
     settling: &mut Settling,
     stage: &mut Stage,
+    share: f64,
 ) -> Option<Vec<f64>> {
     let assembly = view.assembly;
     settling.candidates.clear();
@@ -113,7 +139,7 @@ fn find_impulses(
     // Rates that are rounding count as much as what forces do in so short a moment.
     let sound = |rate: f64| if rate.abs() > ROUNDED * steps.speed { rate } else { 0.0 };
     let rates: Vec<f64> = normal.chain(slips.iter().map(|slip| slip.row.rate)).map(sound).collect();
-    let moment = MOMENT * steps.length / steps.speed;
+    let moment = share * steps.length / steps.speed;
     let mut find = |moment: f64| {
         let found = Jump::find(problem, &rates, moment, solver, solution);
         found.ok().map(|_| solution.force.clone())

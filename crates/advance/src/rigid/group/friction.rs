@@ -69,7 +69,7 @@ impl Dynamics<'_> {
     /// Writes the powers [W] of friction: of each contact that slips, the heat that it makes, less than 0; and what running
     /// surfaces do.
     pub(super) fn note_friction_powers(&self, powers: &mut [f64]) {
-        let Group { works, rows, .. } = &*self.group;
+        let Group { works, rows, spares, .. } = &*self.group;
         let Stage { slipping, forces, .. } = &*self.stage;
         for (power, work) in powers.iter_mut().zip(works) {
             match *work {
@@ -87,7 +87,8 @@ impl Dynamics<'_> {
                         };
                         share * force * self.physics.mechanism.running_speed(row)
                     };
-                    *power = rows.iter().zip(forces).map(of_row).sum();
+                    let of_spares = spares.iter().map(|row| of_row((row, &row.load[0])));
+                    *power = rows.iter().zip(forces).map(of_row).chain(of_spares).sum();
                 }
                 Work::Law(_) | Work::Damping => {}
             }

@@ -31,7 +31,7 @@ impl Group {
             }
         }
         let runs = |row: &ActiveRow| row.is_rough() && mechanism.running_speed(row) != 0.0;
-        if self.rows.iter().any(runs) {
+        if self.rows.iter().chain(&self.spares).any(runs) {
             self.works.push(Work::Surfaces);
         }
     }

@@ -9,7 +9,7 @@
 //! **Invariant**: where a step begins no contact closes by more than the residual of a sweep; no step gives energy to its
 //! contacts: what elasticity returns is no more than the approaches have brought.
 //!
-//! `rows`: the contacts of a step · `slips`: their friction · `sweeps`: the solver · `step`: from one step to the next · `spans`: how long they are · `displacements`: back to
+//! `rows`: the contacts of a step · `slips`: their friction · `sweeps`: the solver · `exact`: what sweeps do not reach · `step`: from one step to the next · `spans`: how long they are · `displacements`: back to
 //! the target · `ending`: bodies in flight again.
 //!
 //! Sources: H. C. Andersen, J. Comput. Phys. 52 (1983) (RATTLE); M. Anitescu, F. A. Potra, Nonlinear Dyn. 14 (1997) (the
@@ -17,6 +17,7 @@
 
 pub(super) mod displacements;
 pub(super) mod ending;
+mod exact;
 pub(super) mod rows;
 pub(super) mod slips;
 pub(super) mod spans;

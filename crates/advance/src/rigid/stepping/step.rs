@@ -10,10 +10,10 @@ use crate::rigid::region::wide::JOINED;
 use crate::rigid::settings::RegionSteps;
 use crate::rigid::shares::MINOR;
 use crate::rigid::stepping::displacements::find_shifts;
+use crate::rigid::stepping::exact::Exact;
 use crate::rigid::stepping::rows::{StepRow, bend_anew, list_rows};
 use crate::rigid::stepping::slips::{StepSlip, list_slips};
 use crate::rigid::stepping::spans::{next_span, straight_span};
-use crate::rigid::stepping::sweeps::sweep;
 use crate::rigid::zeno::budget::note_step;
 use crate::rigid::zeno::memory::Zeno;
 use crate::rigid::zeno::stepped::Pressed;
@@ -33,6 +33,7 @@ pub(crate) struct Stepper {
     pub(super) shifts: Vec<[f64; 3]>,
     /// Accelerations without contacts.
     accelerations: Vec<[f64; 3]>,
+    exact: Exact,
     /// Bodies that are in one step.
     parts: Forest,
     /// What happens in each part, at its root.
@@ -133,6 +134,8 @@ fn read_motions(assembly: &Assembly, region: &Region, stepper: &mut Stepper) {
     stepper.accelerations.clear();
     stepper.accelerations.extend(free.map(|free| [free.x, free.y, 0.0]));
     stepper.accelerations.push([0.0; 3]);
+    stepper.exact.inertias.clear();
+    stepper.exact.inertias.extend(region.bodies().iter().map(|&body| assembly.inertia(body)));
 }
 
 /// Rate [m/s] that is as good as none.
@@ -143,7 +146,7 @@ fn residual(steps: RegionSteps) -> f64 {
 /// Stops the contacts that close; those that have come fast open by their elasticity, if that takes no more energy than the approaches
 /// have brought. Returns the number of contacts that have come fast since the step before.
 fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> u64 {
-    let Stepper { rows, slips, velocities, shifts, .. } = stepper;
+    let Stepper { rows, slips, velocities, shifts, exact, .. } = stepper;
     let (mut any_closes, mut fast, mut brought) = (false, 0, 0.0);
     for row in rows.iter_mut().filter(|row| row.touches) {
         let rate = row.rate(velocities);
@@ -163,7 +166,7 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> u64 {
     let before = &mut *shifts;
     before.clone_from(velocities);
     slips.iter_mut().for_each(|slip| slip.impulse = slip.dragged.stopped_by);
-    sweep((rows, slips), velocities, (residual(steps), 0.0), |row| row.touches);
+    exact.sweep_or_solve((rows, slips), velocities, residual(steps), |row| row.touches);
     // The energy that impulses give is their work at the mean of the rates before and after.
     let given = |rows: &[StepRow], slips: &[StepSlip], velocities: &[[f64; 3]]| -> f64 {
         let works = rows.iter().map(|row| {
@@ -180,7 +183,7 @@ fn stop_closing(stepper: &mut Stepper, steps: RegionSteps) -> u64 {
         for row in rows.iter_mut() {
             row.offset = 0.0;
         }
-        sweep((rows, slips), velocities, (residual(steps), 0.0), |row| row.touches);
+        exact.sweep_or_solve((rows, slips), velocities, residual(steps), |row| row.touches);
     }
     for row in rows.iter_mut() {
         row.stopped_by = row.impulse;
@@ -204,7 +207,7 @@ fn find_parts(region: &Region, stepper: &mut Stepper, steps: RegionSteps) {
 
 /// Finds the velocities in the middle of a step of a length `span` [s], at which no gap falls below its target.
 fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
-    let Stepper { rows, slips, velocities, middle, accelerations, .. } = stepper;
+    let Stepper { rows, slips, velocities, middle, accelerations, exact, .. } = stepper;
     let half = 0.5 * span;
     middle.clear();
     middle.extend(
@@ -222,7 +225,7 @@ fn find_middle(stepper: &mut Stepper, span: f64, residual: f64) {
             *impulse = if row.pressed.is_some() { dragged.impulse } else { dragged.stopped_by };
         }
     }
-    sweep((rows, slips), middle, (residual, 0.0), |_| true);
+    exact.sweep_or_solve((rows, slips), middle, residual, |_| true);
 }
 
 /// Lets the parts of a region coast that go on by steps; the other bodies get their velocities.

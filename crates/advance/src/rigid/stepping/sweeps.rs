@@ -19,12 +19,13 @@ const MOST_SWEEPS: usize = 150;
 /// Changes velocities so that the rows which act have a rate of at least the opposite of their offset, with impulses that only
 /// push, and the slips of those rows stop as far as friction goes. They begin with the impulses that they have; those of other rows
 /// become zero. Rows that are soft, by a part of the mean of their compliances, share what they lack if they contradict each other.
+/// False if rates are off by more than the residual.
 pub(crate) fn sweep(
     (rows, slips): (&mut [StepRow], &mut [StepSlip]),
     velocities: &mut [[f64; 3]],
     (residual, softness): (f64, f64),
     acts: impl Fn(&StepRow) -> bool,
-) {
+) -> bool {
     for row in rows.iter_mut() {
         (row.acts, row.direction) = (acts(row), 0.0);
         let mut slip = slip_of(row, slips);
@@ -48,7 +49,7 @@ pub(crate) fn sweep(
         }
         let most = rows.iter_mut().map(|row| visit(row, slips, velocities, softness)).fold(0.0, f64::max);
         if most <= residual || round >= FINE_SWEEPS && most <= MAJOR * residual {
-            return;
+            return true;
         }
         for row in rows.iter_mut().rev() {
             visit(row, slips, velocities, softness);
@@ -75,6 +76,7 @@ pub(crate) fn sweep(
     for row in rows.iter_mut() {
         visit(row, slips, velocities, softness);
     }
+    false
 }
 
 /// The slip of a row, if it takes part.

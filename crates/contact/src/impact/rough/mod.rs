@@ -22,6 +22,7 @@ use crate::problem::{InverseInertia, Problem};
 use crate::row::{CollisionRow, response};
 use crate::settings::Settings;
 use crate::solution::Solution;
+use crate::warm::WarmStart;
 use crate::words;
 use motion::BodyMotions;
 
@@ -70,8 +71,28 @@ pub(super) struct Rough {
     problem: Problem,
     solution: Solution,
     solver: FrictionMethods,
+    warm: WarmStart,
+    /// The last solution of each phase: in a ricochet the same rows are solved many times.
+    known: [Known; 2],
     /// Normal and tangential rows of the problem: (row of the impact, whether it is the tangential one).
     listed: Vec<(usize, bool)>,
+}
+
+/// A solution of some rows.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+struct Known {
+    listed: Vec<(usize, bool)>,
+    forces: Vec<f64>,
+    /// Modes did not find it.
+    is_hard: bool,
+}
+
+/// A problem of several contacts.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    Compression,
+    Restitution,
 }
 
 impl Impact {
@@ -237,6 +258,7 @@ impl Rough {
 
     fn begin(&mut self, rows: &[CollisionRow]) {
         self.motions.load(rows, &self.rows);
+        self.known.iter_mut().for_each(|known| known.listed.clear());
         let scaled = |jacobian: &[f64; 6], response: &[f64; 6], rate: f64| {
             let square: f64 = jacobian.iter().zip(response).map(|(j, r)| j * r).sum();
             if square > 0.0 { rate.abs() / square.sqrt() } else { 0.0 }

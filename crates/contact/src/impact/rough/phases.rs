@@ -10,16 +10,17 @@
 
 use super::super::law::ImpactError;
 use super::routh::Restitution;
-use super::{Impact, Rough};
+use super::{Impact, Phase, Rough};
 use crate::check::Residuals;
 use crate::error::SolveError;
 use crate::kind::RowKind;
 use crate::problem::{Problem, Row};
 use crate::row::CollisionRow;
 use crate::settings::Settings;
+use crate::solver::Method;
 
-/// Bisections of the share of restitution: its digits as far as they matter.
-const HALVINGS: usize = 40;
+/// Bisections of the share of restitution, which is no exact number: it is as much as gains no energy.
+const HALVINGS: usize = 6;
 /// Energy [-] in units of the work of the impulses that is rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -121,7 +122,8 @@ impl Impact {
                 rough.list_friction(row, before[at][1], place);
             }
         }
-        rough.solve(self.rows.len())?;
+        let phase = if restitution.is_some() { Phase::Restitution } else { Phase::Compression };
+        rough.solve(self.rows.len(), Some(phase))?;
         self.solves += 1;
         let (mut impulses, mut rates) = (vec![[0.0; 2]; set.len()], before);
         let mut at = 0;
@@ -194,16 +196,32 @@ impl Rough {
         }
     }
 
-    /// Solves the problem.
-    pub(super) fn solve(&mut self, rows: usize) -> Result<(), ImpactError> {
-        let Self { problem, solution, solver, .. } = self;
+    /// Solves the problem, beginning with the last solution of the same rows in the same phase, if it is of one.
+    pub(super) fn solve(&mut self, rows: usize, phase: Option<Phase>) -> Result<(), ImpactError> {
+        let Self { problem, solution, solver, warm, listed, known, .. } = self;
         // Rates have the rounding of the fastest one, however slow the rows of this problem are.
         let rates = (0..problem.len()).map(|row| (problem.offset()[row] / problem.row_scale(row)).abs());
         let slowest = rates.fold(0.0, f64::max);
         let residual = Settings::default().natural_residual;
         let allowed = if slowest > 0.0 { residual * (self.fastest / slowest).max(1.0) } else { residual };
         solver.set_natural_residual(allowed);
-        solver.solve(problem, None, solution).map_err(|error| error_of(&error, problem, rows))
+        let mut known = phase.map(|phase| &mut known[phase as usize]);
+        let near = known.as_ref().filter(|known| known.listed == *listed && !listed.is_empty());
+        // What modes did not solve, they will not solve now.
+        let without_modes = near.is_some_and(|known| known.is_hard);
+        if !(without_modes && solver.solve_by_lemke(problem, solution)) {
+            let start = near.map(|known| {
+                warm.guess_forces(known.forces.iter().map(|&force| Some(force)));
+                &*warm
+            });
+            solver.solve(problem, start, solution).map_err(|error| error_of(&error, problem, rows))?;
+        }
+        if let Some(known) = &mut known {
+            known.listed.clone_from(listed);
+            known.forces.clone_from(&solution.force);
+            known.is_hard = solution.method != Method::Modes;
+        }
+        Ok(())
     }
 }
 

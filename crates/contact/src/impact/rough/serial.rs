@@ -111,7 +111,7 @@ impl Impact {
             let offset = rate(rough.motions.sides(other), &self.rows[other].jacobian, &change);
             rough.list(&self.rows, other, offset);
         }
-        rough.solve(self.rows.len())?;
+        rough.solve(self.rows.len(), None)?;
         self.solves += 1;
         let impulses: Vec<f64> = rough.solution.force.clone();
         for (&other, &impulse) in tied.iter().zip(&impulses) {
