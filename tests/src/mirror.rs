@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 
 /// Numbers that change their sign together with x.
-const TURNING: [&str; 4] = ["angle", "angular_velocity", "torque", "rate"];
+const TURNING: [&str; 5] = ["angle", "angular_velocity", "torque", "rate", "surface_velocity"];
 
 /// A scene, as its file holds it, seen in a mirror.
 #[must_use]

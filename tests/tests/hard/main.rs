@@ -15,6 +15,7 @@ mod events;
 mod extremes;
 mod faults;
 mod folds;
+mod frictions;
 mod grazing;
 mod held;
 mod ledger;

@@ -7,8 +7,8 @@ use super::within;
 use halfgap::force::Spring;
 use halfgap::geometry::DVec2;
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, World, WorldBuilder,
-    WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Surface, World,
+    WorldBuilder, WorldSettings,
 };
 use halfgap_tests::mechanism::{block, disc};
 use std::sync::Arc;
@@ -113,6 +113,32 @@ fn resting(units: &Units) -> World {
     builder.build().expect("a fine world")
 }
 
+/// A disc that slips, then rolls, and a block that lands on its corner, both on a belt.
+fn rough(units: &Units) -> World {
+    let mut builder = WorldBuilder::new(WorldSettings::default());
+    let surface = |run| Surface {
+        friction: 0.25,
+        static_friction: 0.5,
+        velocity: run * units.length / units.time,
+        ..Surface::SMOOTH
+    };
+    let l = units.length;
+    let ground = BodySpec::fixed("floor", block(20.0 * l, l), units.place(0.0, -0.5));
+    builder.add(BodySpec { surface: surface(-0.5), ..ground });
+    let one =
+        BodySpec::movable("one", disc(0.5 * l), units.mass, units.state((0.0, 0.5), 0.0, (2.0, 0.0), 0.0));
+    let two = BodySpec::movable(
+        "two",
+        block(l, 0.5 * l),
+        units.mass,
+        units.state((4.0, 0.75), 0.25, (-1.0, 0.0), 0.5),
+    );
+    for (spec, elasticity) in [(one, 0.0), (two, 0.25)] {
+        add(&mut builder, units, BodySpec { surface: surface(0.0), ..spec }, elasticity);
+    }
+    builder.build().expect("a fine world")
+}
+
 /// States after a time, in the units of the scene of unit scale.
 fn after(build: Build, units: &Units, time: f64) -> Vec<BodyState> {
     let mut world = build(units);
@@ -191,4 +217,14 @@ fn a_pendulum_with_a_spring_scales_to_rounding_by_powers_of_ten() {
 #[test]
 fn resting_bodies_scale_to_rounding_by_powers_of_ten() {
     same_to_rounding("bodies that come to rest", resting, 3.0, 1e-9);
+}
+
+#[test]
+fn rough_bodies_scale_bit_for_bit_by_powers_of_two() {
+    same_bits("rough bodies on a belt", rough, 3.0);
+}
+
+#[test]
+fn rough_bodies_scale_to_rounding_by_powers_of_ten() {
+    same_to_rounding("rough bodies on a belt", rough, 3.0, 1e-9);
 }
