@@ -147,10 +147,10 @@ fn a_block_too_rough_to_slide_stops_at_once_and_tips_over_its_corner() {
         let kept = 0.5 * 0.3f64.powi(2) / ((1.0 + 0.04) / 3.0);
         advance(&mut world, 0.01);
         let what = format!("block that slides with mu {friction:e}");
-        within(&format!("{what}: jam [J]"), world.ledger().jams - (kept - 4.5), 1e-9);
+        within(&format!("{what}: jam [J]"), world.ledger().jams - (kept - 4.5), 1e-12);
         advance(&mut world, 2.0);
         let block = state(&world, "block");
-        within(&format!("{what}: back in its place [m]"), block.position.x, 1e-9);
+        within(&format!("{what}: back in its place [m]"), block.position.x, 1e-12);
         within(&format!("{what}: speed [m/s]"), block.velocity.length(), 1e-12);
     }
 }
@@ -194,9 +194,9 @@ fn a_light_block_slips_on_one_a_million_times_as_heavy() {
     // The upper one gets 5 m/s^2 of the 16 of the lower one, which it pulls back with 5 N.
     let shift = 5.0 / stiffness;
     let lower = shift + (4.0 - shift) * (2.0 * time).cos();
-    within("light block slips on a heavy one: lower [m]", state(&world, "lower").position.x - lower, 1e-10);
+    within("light block slips on a heavy one: lower [m]", state(&world, "lower").position.x - lower, 1e-11);
     let upper = 4.0 - 2.5 * time * time;
-    within("light block slips on a heavy one: upper [m]", state(&world, "upper").position.x - upper, 1e-10);
+    within("light block slips on a heavy one: upper [m]", state(&world, "upper").position.x - upper, 1e-11);
 }
 
 /// Friction of 5e6 N shifts the middle of the light block's swings by 0.3125 m, against its motion. So it swings
@@ -213,8 +213,8 @@ fn a_heavy_block_stops_a_light_one_below_it_in_two_swings() {
     world.advance_to(0.002, &mut tell).expect("it sticks");
     // The heavy one moves by 3e-6 m meanwhile, and the light one sticks to it, not to the floor.
     let swings = TAU / 4000.0;
-    within("heavy block on a light one: when it sticks [s]", sticks[0] - swings, 1e-8);
-    within("heavy block on a light one: where [m]", state(&world, "lower").position.x + 0.25, 1e-5);
+    within("heavy block on a light one: when it sticks [s]", sticks[0] - swings, 5e-9);
+    within("heavy block on a light one: where [m]", state(&world, "lower").position.x + 0.25, 1e-6);
     let relative = state(&world, "lower").velocity.x - state(&world, "upper").velocity.x;
     within("heavy block on a light one: slip [m/s]", relative, 1e-9);
     assert!(world.ledger().integration_error().abs() < 1e-12 * 1.5e7);
@@ -535,7 +535,7 @@ fn a_box_that_is_pushed_collects_a_row_of_boxes_one_after_the_other() {
         worst = worst.max((hit - time).abs());
         speed = faster * boxes / (boxes + 1.0);
     }
-    within("box that collects 19 others: times of impacts [s]", worst, 2e-9);
+    within("box that collects 19 others: times of impacts [s]", worst, 5e-10);
     within("box that collects 19 others: books [J]", world.ledger().integration_error(), 1e-11);
 }
 
@@ -584,6 +584,69 @@ fn boxes_in_a_row_stick_until_a_spring_at_its_end_moves_all_of_them_at_once() {
             2e-9,
         );
     }
+}
+
+/// A spring whose far end goes at 1 m/s pulls a block that friction holds with up to 4 N: it slips after 4 N/(k 1 m/s).
+/// How late it does is no matter of the tolerance: a force that lacks less than 1e-9 of the loads counts as enough.
+#[test]
+fn a_block_that_is_pulled_ever_harder_slips_when_friction_is_beaten() {
+    for stiffness in [1.0, 10.0, 100.0] {
+        let hand = "mass = 1e12\nvelocity = [1.0, 0.0]";
+        let parts = [
+            floor(200.0, 0.4),
+            body("block", &block(1.0, 0.5), [0.0, 0.25], 0.4, ""),
+            body("hand", &disc(0.1), [5.0, 0.25], 0.0, hand),
+            "[[force]]\ngravity = { acceleration = [0.0, -10.0], bodies = [\"block\"] }\n".to_owned(),
+            format!(
+                "[[force]]\nspring = {{ a = {{ body = \"hand\", point = [0.0, 0.0] }}, b = {{ body = \"block\", point = [0.0, 0.0] }}, \
+                 rest_length = 5.0, stiffness = {stiffness:?} }}\n"
+            ),
+        ];
+        let mut world = world_of(&parts.concat());
+        let mut slips = Vec::new();
+        let mut tell = |event: &Event| {
+            if let Event::Slips(contact) = event {
+                slips.push(contact.time);
+            }
+        };
+        world.advance_to(4.0 / stiffness + 0.1, &mut tell).expect("it slips");
+        let late = (slips[0] - 4.0 / stiffness) * stiffness;
+        within(&format!("block pulled by {stiffness} N/s: force beyond friction [N]"), late, 3e-8);
+    }
+}
+
+/// Static friction holds up to 4 N, kinetic friction is 2 N, and the spring gains 5 N/s. The block slips as a swing
+/// about the place of kinetic friction, from V = 0.5 m/s to the same speed, and sticks for the rest of a period.
+#[test]
+fn a_block_on_a_belt_sticks_and_slips_450_times_in_its_period() {
+    let (belt, stiffness) = (0.5, 10.0f64);
+    let statics = "static_friction = 0.4";
+    let parts = [
+        floor(200.0, 0.2) + &format!("{statics}\nsurface_velocity = {:?}\n", -belt),
+        body("block", &block(0.4, 0.1), [0.0, 0.05], 0.2, statics),
+        gravity(0.0, -GRAVITY),
+        format!(
+            "[[force]]\nspring = {{ a = {{ body = \"world\", point = [-5.0, 0.05] }}, b = {{ body = \"block\", point = [0.0, 0.0] }}, \
+             rest_length = 5.0, stiffness = {stiffness:?} }}\n"
+        ),
+    ];
+    let mut world = world_of(&parts.concat());
+    let mut slips: Vec<f64> = Vec::new();
+    let mut tell = |event: &Event| {
+        if let Event::Slips(contact) = event
+            && slips.last().is_none_or(|&last| contact.time > last + 0.1)
+        {
+            slips.push(contact.time);
+        }
+    };
+    world.advance_to(1000.0, &mut tell).expect("it sticks and slips");
+    let (rate, gain) = (stiffness.sqrt(), (4.0 - 2.0) / stiffness);
+    let period = (TAU - 2.0 * (gain * rate / belt).atan()) / rate + 2.0 * gain / belt;
+    assert_eq!(slips.len(), 451);
+    // Each slip comes later than it should by what the test above finds.
+    let drift = (slips[450] - slips[0]) / 450.0 - period;
+    within("block on a belt, 450 times stick and slip: period [s]", drift, 1e-8);
+    within("block on a belt, 450 times stick and slip: books [J]", world.ledger().integration_error(), 1e-9);
 }
 
 /// The scene turned about the origin by an angle [rad].
