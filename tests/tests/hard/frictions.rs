@@ -446,6 +446,30 @@ fn a_block_on_belts_that_run_to_each_other_swings() {
     }
 }
 
+/// A column of ten boxes, 1 m by 0.3 m, on a plank that a spring swings at 2 rad/s: it tips as one where 4 a exceeds
+/// g 1 m/(3 m), before any of it slips at g/2.
+#[test]
+fn a_column_on_a_plank_that_swings_stays_as_it_is_up_to_the_acceleration_at_which_it_tips() {
+    let bound = GRAVITY / 3.0 / 4.0;
+    for (swing, stays) in [(0.6 * bound, true), (bound - 1e-5, true), (bound + 1e-4, false)] {
+        let mut parts = floor(100.0, 0.0) + &body("plank", &block(3.0, 0.2), [swing, 0.1], 0.5, "");
+        for place in 0..10 {
+            let y = 0.35 + 0.3 * f64::from(place);
+            parts += &body(&place.to_string(), &block(1.0, 0.3), [swing, y], 0.5, "");
+        }
+        parts += &gravity(0.0, -GRAVITY);
+        parts += "[[force]]\nspring = { a = { body = \"world\", point = [-10.0, 0.1] }, b = { body = \"plank\", point = [0.0, 0.0] }, rest_length = 10.0, stiffness = 44.0 }\n";
+        let mut world = world_of(&parts);
+        let mut events = 0;
+        world.advance_to(2.0, &mut |_| events += 1).expect("it swings");
+        assert_eq!(events == 0, stays, "swing of {swing} m: {events} events");
+        if stays {
+            let off = state(&world, "9").position.x - swing * (2.0f64 * 2.0).cos();
+            within(&format!("column on a plank that swings by {swing:.4} m: top [m]"), off, 1e-11);
+        }
+    }
+}
+
 /// A box of 0.5 by 1 m on a slope, by mu and by the tangent of the slope, both over the tangent 0.5 at which it would
 /// tip, after a second.
 fn box_on_slope([friction, tangent]: [f64; 2]) -> World {
