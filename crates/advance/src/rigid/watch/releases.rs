@@ -51,7 +51,9 @@ pub(crate) fn look_for_release(dynamics: &mut Dynamics<'_>) {
     let mut pulled = dynamics.group.lend_pulled();
     let narrowest = NARROWEST * dynamics.group.span();
     let end = earliest.limit().unwrap_or(dynamics.group.span());
-    let most = if dynamics.group.force_laws().is_empty() { HALVINGS } else { MOST_HALVINGS };
+    // Forces of a group with friction are often at a bound without passing it, and no halving tells.
+    let is_plain = dynamics.group.force_laws().is_empty() || dynamics.group.is_rough();
+    let most = if is_plain { HALVINGS } else { MOST_HALVINGS };
     let (mut part, mut halvings) = (Part::all(end), 0);
     while earliest.is_after(part.from) {
         sample_forces(dynamics, &mut forces, part);
