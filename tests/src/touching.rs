@@ -78,6 +78,7 @@ mod tests {
             force,
             friction: None,
             rolling_moment: None,
+            heat: None,
         };
         let found =
             not_touching(&world, &contact, 1e-12).or_else(|| pulling(&world, &contact, &[contact], 1e-12));

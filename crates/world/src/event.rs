@@ -101,6 +101,9 @@ pub struct ContactForce {
     /// Moment of rolling resistance on `bodies[0]` [N m], counter-clockwise positive, of a contact whose surfaces have some, in an advance by events;
     /// `bodies[1]` gets the opposite.
     pub rolling_moment: Option<f64>,
+    /// Heat [J] that the contact has made by slip and rolling since it began, at least 0, of a contact whose surfaces have friction or rolling
+    /// resistance, in an advance by events. Those of all contacts, past ones as they ended, are together what the ledger's `friction` took.
+    pub heat: Option<f64>,
 }
 
 /// Friction at a contact.

@@ -422,6 +422,7 @@ pub(crate) fn contact_force(row: &RowForce) -> ContactForce {
             sticks,
         }),
         rolling_moment: row.rolling.map(|rolling| rolling.moment),
+        heat: row.heat,
     }
 }
 

@@ -5,6 +5,7 @@ mod dependency_tree;
 mod determinism;
 mod estimate_error;
 mod friction;
+mod friction_told;
 mod groups;
 mod heaps;
 mod impacts;

@@ -195,7 +195,8 @@ impl RigidSystem {
     /// Evaluates the forces of all active rows at a time within the present segments. Allocates.
     #[must_use]
     pub fn row_forces(&self, time: Time) -> Vec<RowForce> {
-        row_forces(&self.rooms.assembly, &self.rooms.connectors, &self.rooms.groups, time)
+        let Rooms { assembly, connectors, groups, books, .. } = &self.rooms;
+        row_forces(assembly, connectors, groups, books, time)
     }
 
     /// Energy ledger at a time within the present segments.

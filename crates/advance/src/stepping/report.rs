@@ -67,6 +67,7 @@ impl Row {
             force,
             friction: None,
             rolling: None,
+            heat: None,
             bouncing: None,
         }
     }
@@ -85,6 +86,7 @@ impl Pair {
             force,
             friction: None,
             rolling: None,
+            heat: None,
             bouncing: None,
         }
     }
@@ -130,6 +132,7 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
                 force,
                 friction: None,
                 rolling: None,
+                heat: None,
                 bouncing: None,
             });
         }

@@ -98,11 +98,14 @@ impl Recording {
             None if further.friction => write!(out, ",,,,")?,
             None => (),
         }
-        match force.rolling_moment {
-            Some(moment) => writeln!(out, ",{moment:?}"),
-            None if further.rolling => writeln!(out, ","),
-            None => writeln!(out),
+        for (number, has_column) in [(force.rolling_moment, further.rolling), (force.heat, further.heat)] {
+            match number {
+                Some(number) => write!(out, ",{number:?}")?,
+                None if has_column => write!(out, ",")?,
+                None => (),
+            }
         }
+        writeln!(out)
     }
 
     /// Writes a line with the energies for each output time.
@@ -120,11 +123,12 @@ impl Recording {
     }
 }
 
-/// Further columns of forces: where any contact has friction, and where any resists rolling.
+/// Further columns of forces: where any contact has friction, where any resists rolling, and where any is told its heat.
 #[derive(Clone, Copy, Debug, Default)]
 struct Further {
     friction: bool,
     rolling: bool,
+    heat: bool,
 }
 
 impl Further {
@@ -132,13 +136,15 @@ impl Further {
         forces.fold(Self::default(), |further, force| Self {
             friction: further.friction || force.friction.is_some(),
             rolling: further.rolling || force.rolling_moment.is_some(),
+            heat: further.heat || force.heat.is_some(),
         })
     }
 
     fn header(self) -> String {
         let friction = if self.friction { ",mode,friction_force [N],slip_speed [m/s],cone_use" } else { "" };
         let rolling = if self.rolling { ",rolling_moment [N m]" } else { "" };
-        format!("{friction}{rolling}")
+        let heat = if self.heat { ",heat [J]" } else { "" };
+        format!("{friction}{rolling}{heat}")
     }
 }
 

@@ -49,6 +49,8 @@ struct ForceJson<'a> {
     friction: Option<FrictionJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rolling_moment: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    heat: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -145,6 +147,7 @@ impl Recording {
                 cone_use: friction.cone_use(),
             }),
             rolling_moment: force.rolling_moment,
+            heat: force.heat,
         }
     }
 

@@ -232,6 +232,7 @@ fn contact(connector: Option<u32>, normal: glam::DVec2, force: f64) -> ContactFo
         force,
         friction: None,
         rolling_moment: None,
+        heat: None,
     }
 }
 
@@ -285,6 +286,23 @@ fn moments_against_rolling_are_written_where_any_contact_has_one() {
     let json: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
     assert_eq!(json["frames"][0]["forces"][0]["rolling_moment"], -0.5);
     assert!(json["frames"][0]["forces"][1].get("rolling_moment").is_none());
+}
+
+#[test]
+fn the_heat_of_contacts_is_written_where_any_makes_some() {
+    let mut recording = with_forces(&world(&scene(1.0, "", "[0, 0]")));
+    recording.contacts[1].event.contact.heat = Some(0.125);
+    let (mut csv, mut text) = (Vec::new(), Vec::new());
+    recording.write_contacts_csv(&mut csv).expect("memory takes everything");
+    insta::assert_snapshot!(String::from_utf8(csv).expect("text"), @r#"
+    change,time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N],heat [J]
+    begins,0.5,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5,
+    ends,0.75,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5,0.125
+    "#);
+    recording.write_json(&mut text).expect("memory takes everything");
+    let json: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(json["contacts"][1]["heat"], 0.125);
+    assert!(json["contacts"][0].get("heat").is_none());
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! All books of a system.
 
 use crate::rigid::books::counts::Counts;
+use crate::rigid::books::heat::Heat;
 use crate::rigid::books::ledger::Ledger;
 use crate::rigid::books::report::{ImpactReport, RowForce, Told};
+use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::group::state::Work;
 use crate::time::Time;
@@ -14,6 +16,7 @@ pub(crate) struct Books {
     pub(super) counts: Counts,
     pub(super) ledger: Ledger,
     pub(super) told: Told,
+    pub(super) heat: Heat,
 }
 
 impl Books {
@@ -37,12 +40,14 @@ impl Books {
             counts: Counts { segments: movable as u64, ..Counts::default() },
             ledger: Ledger { force_laws: vec![0.0; force_laws], ..Ledger::default() },
             told: Told::default(),
+            heat: Heat::default(),
         }
     }
 
     /// Begins an event at a time, of which nothing is told yet.
     pub(crate) fn begin_event(&mut self, time: Time) {
         self.counts.events += 1;
+        self.heat.close(&self.told.changes.end);
         self.told.begin(time);
     }
 
@@ -82,9 +87,10 @@ impl Books {
         self.told.changes.begin.push(row);
     }
 
-    /// Drops rows that end only to begin at once.
+    /// Drops rows that end only to begin at once, and tells the heat of the others.
     pub(crate) fn drop_continued(&mut self) {
         self.told.drop_continued();
+        self.heat.tell(&mut self.told.changes);
     }
 
     /// Notes a gap [m] between bodies.
@@ -138,9 +144,12 @@ impl Books {
         self.ledger.projections += change;
     }
 
-    /// Books the work [J] of a force law without a potential, or of damping.
-    pub(crate) fn book_work(&mut self, work: Work, value: f64) {
+    /// Books the work [J] of a force law without a potential, of damping or of friction, of a group with these rows.
+    pub(crate) fn book_work(&mut self, work: Work, value: f64, rows: &[ActiveRow]) {
         self.ledger.book(work, value);
+        if let Work::Friction(row) = work {
+            self.heat.book(&rows[row as usize], value);
+        }
     }
 
     /// Opens an account for the work of a law that was added.

@@ -9,7 +9,7 @@ use crate::rigid::contacts::rows::{ActiveRow, RowSource, mechanism, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::groups::Groups;
 use crate::rigid::group::physics::physics;
-use crate::rigid::group::state::Group;
+use crate::rigid::group::state::{Group, Work};
 use crate::rigid::surface::RowFriction;
 use crate::time::Time;
 use halfgap_collision::Moving;
@@ -20,6 +20,7 @@ pub(crate) fn row_forces(
     assembly: &Assembly,
     connectors: &Connectors,
     groups: &Groups,
+    books: &Books,
     time: Time,
 ) -> Vec<RowForce> {
     let mut stage = groups.stage().clone();
@@ -29,9 +30,30 @@ pub(crate) fn row_forces(
         let mut dynamics =
             Dynamics { physics: physics(assembly, connectors), group: &mut group, stage: &mut stage, start };
         dynamics.evaluate_at(time.since(start));
+        let first = found.len();
         found.extend(told_rows(assembly, connectors, &group, (stage.forces(), stage.movings())));
+        tell_heat(books, &group, time, &mut found[first..]);
     }
     found
+}
+
+/// Tells the heat of the contacts of a group at a time within its segment, whose rows were told in their order.
+fn tell_heat(books: &Books, group: &Group, time: Time, told: &mut [RowForce]) {
+    if !group.is_rough() {
+        return;
+    }
+    told.iter_mut().for_each(|row| row.heat = books.heat.told(row));
+    let offset = time.since(group.start());
+    let mut recent = vec![0.0; group.rows().len()];
+    for (&work, path) in group.works().iter().zip(group.work_paths()) {
+        if let Work::Friction(row) = work {
+            recent[row as usize] = path.value_at(offset);
+        }
+    }
+    let own = group.rows().iter().zip(recent).filter(|(row, _)| !is_anchor(row));
+    for (told, (_, work)) in told.iter_mut().zip(own) {
+        told.heat = told.heat.map(|heat| heat - work);
+    }
 }
 
 fn is_anchor(row: &ActiveRow) -> bool {
@@ -104,6 +126,7 @@ fn told_rows<'a>(
             force,
             friction,
             rolling,
+            heat: None,
             bouncing: None,
         }
     })

@@ -4,12 +4,13 @@
 //! nothing.
 //!
 //! `all`: the books of a system · `counts`, `ledger`, `report`: their parts · `works`: the ledger within present segments ·
-//! `forces`: those of active rows · `impacts`, `energy`: what is booked when.
+//! `forces`: those of active rows · `heat`: that of each contact · `impacts`, `energy`: what is booked when.
 
 pub(super) mod all;
 pub(super) mod counts;
 pub(super) mod energy;
 pub(super) mod forces;
+mod heat;
 pub(super) mod impacts;
 pub(super) mod ledger;
 pub(super) mod report;

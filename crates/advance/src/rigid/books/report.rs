@@ -27,6 +27,8 @@ pub struct RowForce {
     pub friction: Option<RowFriction>,
     /// Rolling resistance at a contact whose surfaces have some.
     pub rolling: Option<RowRolling>,
+    /// Heat [J] that the contact has made by slip and rolling since it began; `None` where its surfaces resist neither, and in steps.
+    pub heat: Option<f64>,
     /// Duration [s] of the geometric series of bounces, too slow to be resolved, that would have followed under
     /// constant acceleration, of a contact that begins with an impact; `None` where there is no such series.
     pub bouncing: Option<f64>,
@@ -234,6 +236,7 @@ mod tests {
             force: 1.0,
             friction: None,
             rolling: None,
+            heat: None,
             bouncing: None,
         }
     }

@@ -53,7 +53,7 @@ fn book_works(books: &mut Books, group: &Group) {
     books.book_projection(group.projected());
     let first = 2 * group.velocities();
     for (&work, &value) in group.works().iter().zip(&group.end_state()[first..]) {
-        books.book_work(work, value);
+        books.book_work(work, value, group.rows());
     }
 }
 

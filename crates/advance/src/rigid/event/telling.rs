@@ -60,6 +60,7 @@ fn told_of(mechanism: &Mechanism<'_>, record: &Collision, row: &ActiveRow) -> Ro
         force: record.response.force.unwrap_or(0.0),
         friction: row.told_friction(),
         rolling: mechanism.told_rolling(row, row.load[0], row.load[2]),
+        heat: None,
         bouncing: None,
     }
 }
