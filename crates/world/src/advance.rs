@@ -5,7 +5,7 @@ use crate::event::{ContactEvent, Event, ImpactRow};
 use crate::run_error::RunError;
 use crate::strategy::Strategy;
 use crate::world::{World, contact_force};
-use halfgap_advance::rigid::{AdvanceError, Handled, ImpactReport, RowForce};
+use halfgap_advance::rigid::{AdvanceError, ContactChanges, Handled, ImpactReport, RowForce};
 use halfgap_advance::{Time, advance_watched};
 use std::ops::ControlFlow;
 
@@ -102,7 +102,7 @@ impl World {
         let has_failed = self.strategy.failure().is_some();
         let until = Time::from_seconds(time);
         self.strategy.set_duration(self.monitor.duration.max(time - self.time()));
-        if self.tell_first_impact(on_event).is_break() {
+        if self.tell_start(on_event).is_break() {
             return self.conclude(Ok(ControlFlow::Break(())), self.strategy.now());
         }
         let (strategy, told) = (&mut self.strategy, &mut self.told);
@@ -120,16 +120,21 @@ impl World {
         self.conclude(outcome, reached)
     }
 
-    /// Reports the impact at the start, if there was one that has not been reported.
-    pub(crate) fn tell_first_impact(
+    /// Reports what happened at the start, an impact or jams, if it has not been reported.
+    pub(crate) fn tell_start(
         &mut self,
         on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        if !std::mem::take(&mut self.owes_first_impact) {
+        if !std::mem::take(&mut self.owes_first_report) {
             return ControlFlow::Continue(());
         }
-        write_impact(&mut self.told, self.strategy.last_impact());
-        on_event(&self.told)
+        let mut stops = false;
+        if self.strategy.counts().impacts > 0 {
+            write_impact(&mut self.told, self.strategy.last_impact());
+            stops |= on_event(&self.told).is_break();
+        }
+        stops |= tell_oddities(self.strategy.contact_changes(), self.strategy.now(), on_event);
+        if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Reports the impact after which the system cannot go on, if it has come to one. Not to be called for a system
@@ -167,11 +172,8 @@ pub(crate) fn tell(
         stops |= on_event(told).is_break();
     }
     let changes = strategy.contact_changes();
-    let told_of = |row: &RowForce| ContactEvent {
-        time: changes.time.seconds(),
-        contact: contact_force(row),
-        bouncing: row.bouncing,
-    };
+    let told_of = |row: &RowForce| contact_event(row, changes.time);
+    stops |= tell_oddities(changes, changes.time, on_event);
     let ends = changes.end.iter().map(|row| Event::ContactEnds(told_of(row)));
     let begins = changes.begin.iter().map(|row| Event::ContactBegins(told_of(row)));
     let turns = changes.turn.iter().map(|row| match row.friction {
@@ -182,6 +184,26 @@ pub(crate) fn tell(
         stops |= on_event(&event).is_break();
     }
     if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+fn contact_event(row: &RowForce, time: Time) -> ContactEvent {
+    ContactEvent {
+        time: time.seconds(),
+        contact: contact_force(row),
+        bouncing: row.bouncing,
+        energy_change: row.jump,
+    }
+}
+
+/// Reports contacts that jam, and those whose motion is not unique. True if a callback stops the advance.
+fn tell_oddities(
+    changes: &ContactChanges,
+    time: Time,
+    on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
+) -> bool {
+    let jams = changes.jam.iter().map(|row| Event::Jams(contact_event(row, time)));
+    let undecided = changes.undecided.iter().map(|row| Event::Undecided(contact_event(row, time)));
+    jams.chain(undecided).fold(false, |stops, event| stops | on_event(&event).is_break())
 }
 
 /// Writes the report of an impact into a reused buffer, as an [`Impact`].

@@ -18,6 +18,12 @@ pub enum Event {
     Slips(ContactEvent),
     /// A contact that has slipped sticks from now on.
     Sticks(ContactEvent),
+    /// A contact that slips jams: no forces would let it go on, so that velocities jump, without any collision. Told of each contact at which
+    /// that changes the energy.
+    Jams(ContactEvent),
+    /// A contact that slips may go on in several ways: without a force it parts, but its own friction might as well press it together. Told
+    /// where no other contact or connector acts on its bodies.
+    Undecided(ContactEvent),
 }
 
 impl Event {
@@ -29,7 +35,9 @@ impl Event {
             Self::ContactBegins(contact)
             | Self::ContactEnds(contact)
             | Self::Slips(contact)
-            | Self::Sticks(contact) => contact.time,
+            | Self::Sticks(contact)
+            | Self::Jams(contact)
+            | Self::Undecided(contact) => contact.time,
         }
     }
 
@@ -38,7 +46,12 @@ impl Event {
     pub fn impact(&self) -> Option<&Impact> {
         match self {
             Self::Impact(impact) => Some(impact),
-            Self::ContactBegins(_) | Self::ContactEnds(_) | Self::Slips(_) | Self::Sticks(_) => None,
+            Self::ContactBegins(_)
+            | Self::ContactEnds(_)
+            | Self::Slips(_)
+            | Self::Sticks(_)
+            | Self::Jams(_)
+            | Self::Undecided(_) => None,
         }
     }
 }
@@ -129,7 +142,8 @@ impl ContactFriction {
     /// Name of what the contact does: "stick", "slip+" or "slip-", by the sign of its slip; friction on the body goes the other way.
     #[must_use]
     pub fn mode(&self) -> &'static str {
-        match (self.sticks, self.force <= 0.0) {
+        let goes_up = if self.force == 0.0 { self.slip_speed >= 0.0 } else { self.force < 0.0 };
+        match (self.sticks, goes_up) {
             (true, _) => "stick",
             (false, true) => "slip+",
             (false, false) => "slip-",
@@ -148,4 +162,7 @@ pub struct ContactEvent {
     /// closing speed v at the last impact and acceleration a: the true time of rest is `time + bouncing`. Only for a
     /// single contact that begins with an impact.
     pub bouncing: Option<f64>,
+    /// Change of the kinetic energy [J] by a contact that [jams](Event::Jams), negative where energy was lost; `None` for other events. Those of all
+    /// jams are together the ledger's `jams`.
+    pub energy_change: Option<f64>,
 }

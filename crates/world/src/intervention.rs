@@ -118,7 +118,7 @@ impl World {
             on_event(event);
             ControlFlow::Continue(())
         };
-        let _ = self.tell_first_impact(&mut go_on);
+        let _ = self.tell_start(&mut go_on);
         let outcome = act(&mut self.strategy, self.now);
         let outcome = outcome.map(|handled| match handled {
             Some(handled) => tell(&mut self.told, &self.strategy, handled, &mut go_on),

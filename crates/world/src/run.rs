@@ -298,6 +298,8 @@ impl Stepper {
             Event::ContactEnds(event) => (ContactChange::Ends, event),
             Event::Slips(event) => (ContactChange::Slips, event),
             Event::Sticks(event) => (ContactChange::Sticks, event),
+            Event::Jams(event) => (ContactChange::Jams, event),
+            Event::Undecided(event) => (ContactChange::Undecided, event),
         };
         self.contacts.push(ContactRecord { change, event: *event });
     }

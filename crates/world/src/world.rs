@@ -98,8 +98,8 @@ pub struct World {
     pub(crate) start: Start,
     /// The last impact reported, always an `Event::Impact`: its buffers are reused.
     pub(crate) told: Event,
-    /// Whether bodies that closed at the start were stopped by an impact that has not been reported yet.
-    pub(crate) owes_first_impact: bool,
+    /// Whether the start had an impact, jams or contacts whose motion is not unique that have not been reported yet.
+    pub(crate) owes_first_report: bool,
     pub(crate) monitor: InvariantMonitor,
 }
 
@@ -132,9 +132,11 @@ impl World {
     pub(crate) fn new(parts: WorldParts) -> Self {
         let WorldParts { strategy, bodies, connectors, now, warnings, start, monitor } = parts;
         let told = Event::Impact(Impact::default());
-        let owes_first_impact = strategy.counts().impacts > 0;
+        let changes = strategy.contact_changes();
+        let is_odd = !changes.jam.is_empty() || !changes.undecided.is_empty();
+        let owes_first_report = strategy.counts().impacts > 0 || is_odd;
         let mut world =
-            Self { strategy, bodies, connectors, now, warnings, start, told, owes_first_impact, monitor };
+            Self { strategy, bodies, connectors, now, warnings, start, told, owes_first_report, monitor };
         world.monitor.turnover = Turnover::new(world.energy());
         world
     }

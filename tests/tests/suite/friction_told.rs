@@ -1,6 +1,8 @@
 //! What callers are told of friction in events: the heat of each contact, and jams.
 
+use halfgap::scene::{RunData, Scene};
 use halfgap::{Event, World};
+use halfgap_tests::{data, names_in};
 
 /// The world of a scene that lacks but its format, its title and its gravity.
 fn world_of(text: &str) -> World {
@@ -84,4 +86,46 @@ fn the_heat_of_a_block_that_stops_is_its_energy() {
     assert!((heat - 9.0).abs() < 1e-9, "{heat} J");
     let later: f64 = world.contact_forces().iter().filter_map(|contact| contact.heat).sum();
     assert_eq!(later, heat, "what sticks makes no heat");
+}
+
+/// What is told of jams and of contacts that might go on otherwise in a scene with known answers, and its world at the end.
+fn oddities(name: &str) -> (Vec<Event>, World) {
+    let scene = Scene::read(data(&format!("friction/{name}.json"))).expect("the scene can be read");
+    let scene = Scene { run: RunData { tolerance: Some(1e-10), ..scene.run.clone() }, ..scene };
+    let mut world = World::from_scene(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let mut told = Vec::new();
+    let mut tell = |event: &Event| {
+        if matches!(event, Event::Jams(_) | Event::Undecided(_)) {
+            told.push(event.clone());
+        }
+    };
+    world.advance_to(scene.run.duration, &mut tell).unwrap_or_else(|error| panic!("{name}: {error}"));
+    (told, world)
+}
+
+#[test]
+fn a_jam_is_told_with_its_contact_and_its_energy() {
+    let (told, world) = oddities("painleve_rod");
+    let [Event::Jams(jam)] = told.as_slice() else { panic!("{told:?}") };
+    let (energy, bodies) = (jam.energy_change.expect("it jams"), jam.contact.bodies.map(|body| body.0));
+    assert_eq!((jam.time, bodies), (0.0, [1, 0]));
+    assert!((energy + 0.2).abs() < 1e-7 && (energy - world.ledger().jams).abs() < 1e-12, "{energy} J");
+}
+
+#[test]
+fn a_contact_that_might_go_on_otherwise_is_told() {
+    let (told, world) = oddities("painleve_rod_undecided");
+    let [Event::Undecided(undecided)] = told.as_slice() else { panic!("{told:?}") };
+    let friction = undecided.contact.friction.expect("it slips");
+    assert_eq!((undecided.time, undecided.contact.force, friction.sticks), (0.0, 0.0, false));
+    assert!(friction.slip_speed.abs() > 0.1, "{friction:?}");
+    assert_eq!((undecided.energy_change, world.ledger().jams), (None, 0.0));
+}
+
+#[test]
+fn nothing_else_jams_or_is_undecided() {
+    for name in names_in("friction").iter().filter(|name| !name.starts_with("painleve")) {
+        let (told, _) = oddities(name);
+        assert!(told.is_empty(), "{name}: {told:?}");
+    }
 }

@@ -68,6 +68,7 @@ impl Row {
             friction: None,
             rolling: None,
             heat: None,
+            jump: None,
             bouncing: None,
         }
     }
@@ -87,6 +88,7 @@ impl Pair {
             friction: None,
             rolling: None,
             heat: None,
+            jump: None,
             bouncing: None,
         }
     }
@@ -133,6 +135,7 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
                 friction: None,
                 rolling: None,
                 heat: None,
+                jump: None,
                 bouncing: None,
             });
         }

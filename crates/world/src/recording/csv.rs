@@ -54,16 +54,20 @@ impl Recording {
         Ok(())
     }
 
-    /// Writes a line for each contact that began or ended.
+    /// Writes a line for each contact that began, ended or changed otherwise.
     ///
     /// # Errors
     /// Errors of the writer.
     pub fn write_contacts_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         let further = Further::of(self.contacts.iter().map(|record| &record.event.contact));
-        writeln!(out, "change,time [s],{FORCE_HEADER}{}", further.header())?;
+        let any_jams = self.contacts.iter().any(|record| record.event.energy_change.is_some());
+        let energy_change = if any_jams { ",energy_change [J]" } else { "" };
+        writeln!(out, "change,time [s],{FORCE_HEADER}{}{energy_change}", further.header())?;
         for record in &self.contacts {
             write!(out, "{},{:?},", record.change.name(), record.event.time)?;
             self.write_force(out, &record.event.contact, further)?;
+            write_number(out, record.event.energy_change, any_jams)?;
+            writeln!(out)?;
         }
         Ok(())
     }
@@ -79,6 +83,7 @@ impl Recording {
             for force in &frame.forces {
                 write!(out, "{:?},", frame.time)?;
                 self.write_force(out, force, further)?;
+                writeln!(out)?;
             }
         }
         Ok(())
@@ -98,14 +103,8 @@ impl Recording {
             None if further.friction => write!(out, ",,,,")?,
             None => (),
         }
-        for (number, has_column) in [(force.rolling_moment, further.rolling), (force.heat, further.heat)] {
-            match number {
-                Some(number) => write!(out, ",{number:?}")?,
-                None if has_column => write!(out, ",")?,
-                None => (),
-            }
-        }
-        writeln!(out)
+        write_number(out, force.rolling_moment, further.rolling)?;
+        write_number(out, force.heat, further.heat)
     }
 
     /// Writes a line with the energies for each output time.
@@ -145,6 +144,15 @@ impl Further {
         let rolling = if self.rolling { ",rolling_moment [N m]" } else { "" };
         let heat = if self.heat { ",heat [J]" } else { "" };
         format!("{friction}{rolling}{heat}")
+    }
+}
+
+/// Writes a number behind a comma, or nothing behind one where the table has a column for it.
+fn write_number(out: &mut dyn Write, number: Option<f64>, has_column: bool) -> io::Result<()> {
+    match number {
+        Some(number) => write!(out, ",{number:?}"),
+        None if has_column => write!(out, ","),
+        None => Ok(()),
     }
 }
 

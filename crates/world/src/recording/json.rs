@@ -67,6 +67,8 @@ struct ContactJson<'a> {
     time: f64,
     #[serde(flatten)]
     contact: ForceJson<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energy_change: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -156,6 +158,7 @@ impl Recording {
             change: record.change.name(),
             time: record.event.time,
             contact: self.force_json(&record.event.contact),
+            energy_change: record.event.energy_change,
         }
     }
 

@@ -30,10 +30,10 @@ pub struct Recording {
     pub ledger: Ledger,
 }
 
-/// A contact that began or ended.
+/// A contact that began, ended or changed otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactRecord {
-    /// Whether the contact began or ended.
+    /// What happened to the contact.
     pub change: ContactChange,
     /// Time, place and force.
     pub event: ContactEvent,
@@ -50,10 +50,14 @@ pub enum ContactChange {
     Slips,
     /// The contact has slipped, and sticks now.
     Sticks,
+    /// The contact has slipped, and velocities jump.
+    Jams,
+    /// The contact slips, and might go on in several ways.
+    Undecided,
 }
 
 impl ContactChange {
-    /// Name in tables: "begins", "ends", "slips" or "sticks".
+    /// Name in tables: "begins", "ends", "slips", "sticks", "jams" or "undecided".
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -61,6 +65,8 @@ impl ContactChange {
             Self::Ends => "ends",
             Self::Slips => "slips",
             Self::Sticks => "sticks",
+            Self::Jams => "jams",
+            Self::Undecided => "undecided",
         }
     }
 }

@@ -29,7 +29,7 @@ struct Content<S, B, W, M> {
     now: Time,
     warnings: W,
     start: Start,
-    owes_first_impact: bool,
+    owes_first_report: bool,
     monitor: M,
 }
 
@@ -71,7 +71,7 @@ impl World {
             now: self.now,
             warnings: &self.warnings,
             start: self.start,
-            owes_first_impact: self.owes_first_impact,
+            owes_first_report: self.owes_first_report,
             monitor: &self.monitor,
         };
         let written = postcard::to_extend(&content, header::room());
@@ -108,7 +108,7 @@ impl World {
             warnings: content.warnings,
             start: content.start,
             told: Event::Impact(Impact::default()),
-            owes_first_impact: content.owes_first_impact,
+            owes_first_report: content.owes_first_report,
             monitor: content.monitor,
         })
     }

@@ -245,7 +245,12 @@ fn with_forces(world: &World) -> Recording {
         contact(Some(3), glam::DVec2::X, -6.0),
         contact(Some(3), glam::DVec2::Y, 8.0),
     ];
-    let event = ContactEvent { time: 0.5, contact: contact(None, glam::DVec2::Y, 2.5), bouncing: Some(0.25) };
+    let event = ContactEvent {
+        time: 0.5,
+        contact: contact(None, glam::DVec2::Y, 2.5),
+        bouncing: Some(0.25),
+        energy_change: None,
+    };
     recording.contacts.push(ContactRecord { change: ContactChange::Begins, event });
     recording
         .contacts
@@ -303,6 +308,24 @@ fn the_heat_of_contacts_is_written_where_any_makes_some() {
     let json: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
     assert_eq!(json["contacts"][1]["heat"], 0.125);
     assert!(json["contacts"][0].get("heat").is_none());
+}
+
+#[test]
+fn the_energy_of_jams_is_written_where_there_are_any() {
+    let mut recording = with_forces(&world(&scene(1.0, "", "[0, 0]")));
+    recording.contacts[1].change = ContactChange::Jams;
+    recording.contacts[1].event.energy_change = Some(-0.5);
+    let (mut csv, mut text) = (Vec::new(), Vec::new());
+    recording.write_contacts_csv(&mut csv).expect("memory takes everything");
+    insta::assert_snapshot!(String::from_utf8(csv).expect("text"), @r#"
+    change,time [s],primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N],energy_change [J]
+    begins,0.5,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5,
+    jams,0.75,disc,"rim, ""fixed""",,0.0,-1.0,0.0,1.0,2.5,-0.5
+    "#);
+    recording.write_json(&mut text).expect("memory takes everything");
+    let json: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(json["contacts"][1]["energy_change"], -0.5);
+    assert!(json["contacts"][0].get("energy_change").is_none());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The way on for contacts that slip and whose forces have no solution: velocities jump, without any collision.
 
+use crate::rigid::active_set::painleve::change_along;
 use crate::rigid::active_set::posing::{accelerate_region, pose_problem};
 use crate::rigid::active_set::settle::may_carry_force;
 use crate::rigid::active_set::settling::Settling;
@@ -77,13 +78,7 @@ fn find_within(
 
 /// Change of the slip speed [m/s] of a candidate by those of the velocities of the region's bodies.
 fn change_of(region: &Region, slip: &Slip, changes: &[[f64; 3]]) -> f64 {
-    let bodies = region.records()[slip.record].bodies();
-    let sides = bodies.into_iter().zip(slip.row.jacobian.chunks_exact(3));
-    let of_sides = sides.filter_map(|(body, j)| {
-        let change = changes[region.place(body)?];
-        Some(j.iter().zip(change).map(|(j, change)| j * change).sum::<f64>())
-    });
-    of_sides.sum()
+    change_along(region, &region.records()[slip.record], &slip.row.jacobian, changes)
 }
 
 /// Notes the records that have no force in the last solution, in which there were forces. False if they were known.

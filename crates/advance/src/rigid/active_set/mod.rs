@@ -7,7 +7,7 @@
 //! `choosing`: which candidates become active, and at which gap · `hops`: contacts that open and close again at once · `jammed`:
 //! forces of rows that work against each other · `leverless`, `levers`: contacts that act by next to no lever · `dependent`,
 //! `redundant`: candidates that depend on others · `leaving`: contacts that end at once · `slips`: who slips and who
-//! sticks · `jump`: what follows where slips have no forces.
+//! sticks · `jump`: what follows where slips have no forces · `painleve`: what there is to tell of that.
 
 pub(super) mod choosing;
 pub(super) mod dependent;
@@ -18,6 +18,7 @@ pub(super) mod jump;
 pub(super) mod leaving;
 pub(super) mod leverless;
 pub(super) mod levers;
+pub(super) mod painleve;
 pub(super) mod posing;
 pub(super) mod redundant;
 pub(super) mod relaxing;

@@ -11,6 +11,7 @@ use crate::rigid::active_set::exclusion::{Excluded, Exclusion};
 use crate::rigid::active_set::hops::{is_low_hop, may_hop};
 use crate::rigid::active_set::jammed::is_jammed;
 use crate::rigid::active_set::leverless::exclude_leverless;
+use crate::rigid::active_set::painleve::note_undecided;
 use crate::rigid::active_set::posing::{accelerate_region, offset_under, pose_problem};
 use crate::rigid::active_set::relaxing::relax;
 use crate::rigid::active_set::settling::Settling;
@@ -56,6 +57,7 @@ pub(crate) fn settle(
     settling.active.clear();
     settling.touches.clear();
     settling.excluded.clear();
+    settling.undecided.clear();
     settling.candidates.clear();
     settling.given_way.clone_from(&settling.yielding);
     let is_start = region.cause() == Cause::Start;
@@ -88,6 +90,7 @@ pub(crate) fn settle(
     if solved == Solved::Nothing {
         return Ok(());
     }
+    note_undecided(view.assembly, region, settling);
     if region.is_strained() {
         relax(view, region, settling, stage);
     }

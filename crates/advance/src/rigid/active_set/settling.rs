@@ -54,6 +54,9 @@ pub(crate) struct Settling {
     /// Records whose contacts have begun to slip in this event, with the axis and the side to which they do.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) given_way: Vec<(usize, Axis, f64)>,
+    /// Records of contacts whose motion is not unique, with the speeds [m/s] at which they slip.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) undecided: Vec<(usize, f64)>,
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) excluded: Vec<Excluded>,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -122,6 +125,7 @@ impl Default for Settling {
             loose: Vec::new(),
             yielding: Vec::new(),
             given_way: Vec::new(),
+            undecided: Vec::new(),
             excluded: Vec::new(),
             levers: Levers::default(),
             redundant: Redundant::default(),

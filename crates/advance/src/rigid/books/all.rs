@@ -87,6 +87,16 @@ impl Books {
         self.told.changes.begin.push(row);
     }
 
+    /// Tells a contact at which velocities have jumped.
+    pub(crate) fn tell_jam(&mut self, row: RowForce) {
+        self.told.changes.jam.push(row);
+    }
+
+    /// Tells a contact whose motion is not unique.
+    pub(crate) fn tell_undecided(&mut self, row: RowForce) {
+        self.told.changes.undecided.push(row);
+    }
+
     /// Drops rows that end only to begin at once, and tells the heat of the others.
     pub(crate) fn drop_continued(&mut self) {
         self.told.drop_continued();

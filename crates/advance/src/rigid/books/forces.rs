@@ -127,6 +127,7 @@ fn told_rows<'a>(
             friction,
             rolling,
             heat: None,
+            jump: None,
             bouncing: None,
         }
     })

@@ -41,8 +41,8 @@ impl Heat {
 
     /// Tells the heat of all contacts that change.
     pub(super) fn tell(&self, changes: &mut ContactChanges) {
-        let ContactChanges { begin, end, turn, .. } = changes;
-        for row in begin.iter_mut().chain(end).chain(turn) {
+        let ContactChanges { begin, end, turn, undecided, .. } = changes;
+        for row in begin.iter_mut().chain(end).chain(turn).chain(undecided) {
             row.heat = self.told(row);
         }
     }

@@ -29,6 +29,8 @@ pub struct RowForce {
     pub rolling: Option<RowRolling>,
     /// Heat [J] that the contact has made by slip and rolling since it began; `None` where its surfaces resist neither, and in steps.
     pub heat: Option<f64>,
+    /// Change of the kinetic energy [J] at a contact by a jump of velocities: see [`ContactChanges::jam`].
+    pub jump: Option<f64>,
     /// Duration [s] of the geometric series of bounces, too slow to be resolved, that would have followed under
     /// constant acceleration, of a contact that begins with an impact; `None` where there is no such series.
     pub bouncing: Option<f64>,
@@ -66,6 +68,11 @@ pub struct ContactChanges {
     pub end: Vec<RowForce>,
     /// Contacts that go on, but stick from this event on where they have slipped, or slip where they have stuck.
     pub turn: Vec<RowForce>,
+    /// Contacts that jam: as they slip there are no forces, and velocities jump. One for each contact, and each of several jumps, that changes
+    /// the energy.
+    pub jam: Vec<RowForce>,
+    /// Contacts that slip and whose motion is not unique: they part, but might as well be pressed together by their own friction.
+    pub undecided: Vec<RowForce>,
 }
 
 impl Told {
@@ -82,11 +89,12 @@ impl Told {
 }
 
 impl ContactChanges {
-    /// True if nothing begins or ends.
+    /// True if there is nothing to tell.
     #[must_use]
     #[inline]
     pub fn is_empty(&self) -> bool {
-        self.begin.is_empty() && self.end.is_empty() && self.turn.is_empty()
+        let Self { begin, end, turn, jam, undecided, .. } = self;
+        [begin, end, turn, jam, undecided].into_iter().all(Vec::is_empty)
     }
 
     pub(crate) fn clear(&mut self, time: Time) {
@@ -94,6 +102,8 @@ impl ContactChanges {
         self.begin.clear();
         self.end.clear();
         self.turn.clear();
+        self.jam.clear();
+        self.undecided.clear();
     }
 
     /// Drops rows that end only to begin at once, and notes which of them stick or slip now where they did not. Those in both lists mostly have one order, so each search begins
@@ -237,6 +247,7 @@ mod tests {
             friction: None,
             rolling: None,
             heat: None,
+            jump: None,
             bouncing: None,
         }
     }

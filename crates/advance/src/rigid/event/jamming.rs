@@ -1,8 +1,11 @@
 //! Jams: contacts that slip and whose forces have no solution stop slipping within an instant, without any collision.
 
 use crate::rigid::active_set::jump::{WayOn, find_way_on};
+use crate::rigid::active_set::painleve::works_of_jump;
 use crate::rigid::books::energy::{book_damping, interrupt};
+use crate::rigid::books::report::RowForce;
 use crate::rigid::event::rooms::Rooms;
+use crate::rigid::event::telling::told_record;
 use crate::rigid::event::work::EventWork;
 use crate::rigid::region::records::remeasure;
 use glam::DVec2;
@@ -32,6 +35,11 @@ pub(super) fn unjam(rooms: &mut Rooms, work: &mut EventWork) -> bool {
         work_of_jump += kinetic(rooms) - before;
     }
     rooms.books.book_jam(work_of_jump);
+    for (record, work_at) in works_of_jump(&work.region, &work.settling) {
+        let told =
+            RowForce { jump: Some(work_at), force: 0.0, ..told_record(&work.region.records()[record]) };
+        rooms.books.tell_jam(told);
+    }
     remeasure(&rooms.assembly, &rooms.connectors, &mut work.region, now);
     true
 }

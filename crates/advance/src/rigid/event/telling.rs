@@ -1,15 +1,17 @@
-//! What callers are told of the contacts that an event lets begin.
+//! What callers are told of the contacts that an event lets begin, and of those whose motion is not unique.
 
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::books::all::Books;
 use crate::rigid::books::report::RowForce;
 use crate::rigid::connectors::store::Connectors;
-use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowSource, mechanism};
+use crate::rigid::contacts::friction::slip_of;
+use crate::rigid::contacts::rows::{ActiveRow, Mechanism, mechanism};
 use crate::rigid::region::touching::Region;
+use crate::rigid::surface::RowFriction;
 use halfgap_collision::Collision;
 
-/// Notes the unilateral rows that are active from now on.
+/// Notes the unilateral rows that are active from now on, and what might go on otherwise.
 pub(crate) fn note_begins(
     assembly: &Assembly,
     connectors: &Connectors,
@@ -24,6 +26,14 @@ pub(crate) fn note_begins(
             ..told_of(&mechanism, &region.records()[*index], row)
         };
         books.begin_contact(told);
+    }
+    for &(index, slip_speed) in settling.undecided() {
+        let record = &region.records()[index];
+        let most = slip_of(assembly, connectors, record).map_or(0.0, |(_, surface)| surface.kinetic)
+            * record.response.force.unwrap_or(0.0);
+        let force = -slip_speed.signum() * most;
+        let friction = Some(RowFriction { force, slip_speed, most, sticks: false });
+        books.tell_undecided(RowForce { friction, ..told_record(record) });
     }
     books.drop_continued();
 }
@@ -47,20 +57,25 @@ fn bouncing(assembly: &Assembly, books: &Books, region: &Region, settling: &Sett
 }
 
 fn told_of(mechanism: &Mechanism<'_>, record: &Collision, row: &ActiveRow) -> RowForce {
-    let features = match row.source {
-        RowSource::Contact(features) | RowSource::Anchor(features) => Some(features),
-        RowSource::Connector(..) => None,
-    };
+    let rolling = mechanism.told_rolling(row, row.load[0], row.load[2]);
+    RowForce { friction: row.told_friction(), rolling, ..told_record(record) }
+}
+
+/// What callers are told of a record, but its friction.
+pub(super) fn told_record(record: &Collision) -> RowForce {
+    let sides = [&record.parties.primary, &record.parties.normal].map(|side| side.feature());
+    let features = if let [Some(primary), Some(normal)] = sides { Some([primary, normal]) } else { None };
     RowForce {
-        bodies: row.bodies,
+        bodies: record.bodies(),
         connector: record.connector(),
         features,
         point: record.geometry.point_primary,
         normal: record.geometry.normal,
         force: record.response.force.unwrap_or(0.0),
-        friction: row.told_friction(),
-        rolling: mechanism.told_rolling(row, row.load[0], row.load[2]),
+        friction: None,
+        rolling: None,
         heat: None,
+        jump: None,
         bouncing: None,
     }
 }
