@@ -1,7 +1,7 @@
 //! The table that `halfgap run` prints.
 
 use crate::numbers::{booked, change, energy, gap, given, size, state};
-use halfgap::{Difference, ErrorEstimate, Ledger, RunResult, short_names, short_text};
+use halfgap::{Difference, ErrorEstimate, FrictionThreshold, Ledger, RunResult, short_names, short_text};
 use std::fmt::Write;
 
 /// Largest number of bodies listed; `--json` and `--out` list all.
@@ -146,9 +146,24 @@ fn push_estimate(text: &mut String, estimate: &ErrorEstimate) {
         }
         (false, None) => {}
     }
+    for threshold in &estimate.thresholds {
+        push_threshold(text, threshold);
+    }
     if let Some(error) = &estimate.tighter_stopped {
         let _ = writeln!(text, "  the tighter run stopped early: {error}");
     }
+}
+
+/// Warns of a contact of which the least change decides whether it slips.
+fn push_threshold(text: &mut String, threshold: &FrictionThreshold) {
+    let FrictionThreshold { bodies: [a, b], time, spare, slip_speeds } = threshold;
+    let _ = write!(text, "  at a threshold of friction from {time:.4} s on: {a} on {b} ");
+    let _ = match slip_speeds.map(|speeds| speeds.map(size)) {
+        Some([here, there]) => {
+            writeln!(text, "slips at {here} m/s here, at {there} m/s at the tighter tolerance")
+        }
+        None => writeln!(text, "has {} of its friction to spare", size(*spare)),
+    };
 }
 
 fn push_difference(text: &mut String, when: &str, difference: &Difference) {

@@ -79,7 +79,7 @@ pub use builder::{BodySpec, WorldBuilder};
 pub use check::{CheckReport, check};
 pub use connector::ConnectorSpec;
 #[cfg(feature = "scene")]
-pub use estimate::{Difference, ErrorEstimate, TimedDifference, estimate_error};
+pub use estimate::{Difference, ErrorEstimate, FrictionThreshold, TimedDifference, estimate_error};
 pub use event::{ContactEvent, ContactForce, ContactFriction, Event, Impact, ImpactRow};
 pub use halfgap_advance::rigid::{Remedy, RemedyCounts, RemedySet};
 pub use halfgap_collision::{

@@ -108,6 +108,45 @@ fn run_estimates_its_error() {
     assert!(without.get("error_estimate").is_none(), "{without}");
 }
 
+/// A block at rest on a slope of 1/2, with a friction coefficient.
+fn block_on_slope(friction: f64) -> String {
+    let (angle, cos, sin) = (0.5_f64.atan(), 0.8_f64.sqrt(), 0.2_f64.sqrt());
+    let body = |name: &str, more: &str, (width, height): (f64, f64), up: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\n{more}\nfriction = {friction:?}\nangle = {angle:?}\n\
+             position = [{:?}, {:?}]\nshape = {{ block = {{ width = {width:?}, height = {height:?} }} }}\n",
+            -up * sin,
+            up * cos
+        )
+    };
+    let slope = body("slope", "fixed = true", (20.0, 1.0), -0.5);
+    let block = body("block", "mass = 2.0", (1.0, 0.5), 0.25);
+    format!(
+        "format = \"halfgap-scene-1\"\ntitle = \"Slope\"\nrun = {{ duration = 2.0, tolerance = 1e-8 }}\n\
+         {slope}{block}[[force]]\ngravity = {{ acceleration = [0.0, -10.0] }}\n"
+    )
+}
+
+#[test]
+fn the_estimate_warns_of_thresholds_of_friction() {
+    let folder = Folder::new("threshold");
+    let told = |friction: f64| {
+        let scene = folder.write("slope.toml", &block_on_slope(friction));
+        folder.plain(&halfgap(&["run", &scene, "--estimate-error"]).stdout)
+    };
+    let warning = "  at a threshold of friction from 0.0000 s on: slope on block has ";
+    for friction in [0.5, 0.5 * (1.0 + 1e-8), 0.5 * (1.0 - 1e-8), 0.5 * (1.0 + 5e-7), 0.5 * (1.0 - 5e-7)] {
+        assert!(told(friction).contains(warning), "{friction:?}: {}", told(friction));
+    }
+    assert!(told(0.5 * (1.0 + 5e-7)).contains(&format!("{warning}5e-7 of its friction to spare\n")));
+    for friction in [0.5 * (1.0 + 1e-5), 0.5 * (1.0 - 1e-5), 0.3, 0.8] {
+        assert!(!told(friction).contains("threshold"), "{friction:?}: {}", told(friction));
+    }
+    let scene = folder.write("slope.toml", &block_on_slope(0.5));
+    let estimate = &json(&halfgap(&["run", &scene, "--estimate-error", "--json"]))["error_estimate"];
+    assert_eq!(estimate["thresholds"][0]["bodies"], serde_json::json!(["slope", "block"]));
+}
+
 #[test]
 fn quiet_is_quiet() {
     let folder = Folder::new("quiet");

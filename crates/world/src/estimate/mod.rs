@@ -2,7 +2,8 @@
 //!
 //! The error of a run is in proportion to its tolerance, so that of the tighter run is small beside that of the first,
 //! and the difference of both is the error of the first to within that small fraction. `tighter` makes the tighter
-//! scene, `difference` compares states, `event_times` compares impacts, `growth` distinguishes chaos from error.
+//! scene, `difference` compares states, `event_times` compares impacts, `growth` distinguishes chaos from error,
+//! `thresholds` finds contacts of which the least change decides whether they slip.
 //!
 //! The idea is that of tolerance reduction as an estimate of the global error, reviewed in R. D. Skeel,
 //! "Thirteen ways to estimate global error", Numerische Mathematik 48 (1986), 1-20 (there among the methods
@@ -12,9 +13,11 @@
 mod difference;
 mod event_times;
 mod growth;
+mod thresholds;
 mod tighter;
 
 pub use difference::{Difference, TimedDifference};
+pub use thresholds::FrictionThreshold;
 
 use crate::recording::Recording;
 use crate::run::{Progress, Record, RunPlan, RunReport, run};
@@ -52,6 +55,8 @@ pub struct ErrorEstimate {
     /// times the tolerance or the target gap over the smallest body's size, if that is more; `None` if it stays so to
     /// the end.
     pub trusted_until: Option<f64>,
+    /// Contacts at thresholds of friction, up to `trusted_until`: the scene does not tell whether they stick or slip.
+    pub thresholds: Vec<FrictionThreshold>,
     /// Error that stopped the tighter run early, if one did.
     #[serde(serialize_with = "message")]
     pub tighter_stopped: Option<RunError>,
@@ -120,6 +125,7 @@ fn compare(world: &World, run: &Recording, tighter: &Recording, tolerance: f64) 
         impacts: [run.impacts.len(), tighter.impacts.len()],
         chaotic: growth.chaotic,
         trusted_until: growth.trusted_until,
+        thresholds: thresholds::find(world, [run, tighter], trusted),
         tighter_stopped: None,
         curve,
     }

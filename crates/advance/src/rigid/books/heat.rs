@@ -26,7 +26,7 @@ impl Heat {
         let key = (row.bodies, features);
         match self.place(key) {
             Ok(place) => self.accounts[place].1 -= work,
-            Err(place) => self.accounts.insert(place, (key, -work)),
+            Err(place) => self.accounts.insert(place, (key, 0.0 - work)),
         }
     }
 
