@@ -9,7 +9,8 @@ use crate::rigid::group::stage::Stage;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::shares::ROUNDED;
-use halfgap_collision::Collision;
+use glam::DVec2;
+use halfgap_collision::{BodyState, Collision};
 use halfgap_contact::Jump;
 
 /// Moments over which impulses are sought, as shares of the time scale of the scene [-]. In the first, forces give a velocity that
@@ -61,11 +62,15 @@ fn find_within(
 ) -> Found {
     let Some(impulses) = find_impulses(view, region, settling, stage, share) else { return Found::Nothing };
     let of_forces = std::mem::replace(&mut settling.solution.force, impulses);
-    let mut changes = std::mem::take(&mut settling.pushed);
-    changes.clear();
-    changes.resize(region.bodies().len(), [0.0; 3]);
-    settling.add_responses(region, &settling.candidates, |body| view.assembly.inertia(body), &mut changes);
-    settling.pushed = changes;
+    find_changes(view, region, settling);
+    if gain_of(view, region, &settling.pushed) > 0.0 {
+        // Modes differ over the moment and its half, and what remains of both is no impulse of contacts; that of the half is.
+        settling.solution.force.clone_from(&of_forces);
+        find_changes(view, region, settling);
+        if gain_of(view, region, &settling.pushed) > 0.0 {
+            return Found::Nothing;
+        }
+    }
     let rest = view.assembly.rest_speed();
     if settling.slips.iter().any(|slip| change_of(region, slip, &settling.pushed).abs() > rest) {
         return Found::Jump;
@@ -79,6 +84,31 @@ fn find_within(
 /// Change of the slip speed [m/s] of a candidate by those of the velocities of the region's bodies.
 fn change_of(region: &Region, slip: &Slip, changes: &[[f64; 3]]) -> f64 {
     change_along(region, &region.records()[slip.record], &slip.row.jacobian, changes)
+}
+
+/// Leaves the changes of the velocities of the region's bodies by the impulses of the last solution in `pushed`.
+fn find_changes(view: &View<'_>, region: &Region, settling: &mut Settling) {
+    let mut changes = std::mem::take(&mut settling.pushed);
+    changes.clear();
+    changes.resize(region.bodies().len(), [0.0; 3]);
+    settling.add_responses(region, &settling.candidates, |body| view.assembly.inertia(body), &mut changes);
+    settling.pushed = changes;
+}
+
+/// Energy [J] that the region's bodies get by changes of their velocities, beyond rounding.
+fn gain_of(view: &View<'_>, region: &Region, changes: &[[f64; 3]]) -> f64 {
+    let (mut gain, mut terms) = (0.0, 0.0);
+    for (&body, &[x, y, spin]) in region.bodies().iter().zip(changes) {
+        let before = view.assembly.trajectory(body).unwound_at(view.assembly.now());
+        let after = BodyState {
+            velocity: before.velocity + DVec2::new(x, y),
+            angular_velocity: before.angular_velocity + spin,
+            ..before
+        };
+        let [before, after] = [before, after].map(|state| view.assembly.kinetic_energy(body, &state));
+        (gain, terms) = (gain + after - before, terms + after + before);
+    }
+    gain - ROUNDED * terms
 }
 
 /// Notes the records that have no force in the last solution, in which there were forces. False if they were known.

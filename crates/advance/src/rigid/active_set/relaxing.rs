@@ -2,20 +2,18 @@
 
 use crate::rigid::active_set::posing::pose_problem;
 use crate::rigid::active_set::settling::Settling;
-use crate::rigid::active_set::slips::all_stick;
+use crate::rigid::active_set::slips::{NARROWED, all_stick};
 use crate::rigid::group::stage::Stage;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
-
-/// Halvings of the slack that [`relax`] tries: with less of it the next event comes no later.
-const RELAXATIONS: usize = 24;
 
 /// Shares the forces of contacts that stick otherwise, each as far from its bound as can be: where rows are redundant many forces give the
 /// same motion, and the next event comes the later.
 pub(super) fn relax(view: &View<'_>, region: &Region, settling: &mut Settling, stage: &Stage) {
     let kept = settling.solution.clone();
     settling.slack = 1.0;
-    for _ in 0..RELAXATIONS {
+    // With less than that the next event comes no later.
+    while settling.slack > NARROWED {
         settling.slack *= 0.5;
         pose_problem(view.assembly, view.connectors, region, settling, stage);
         if settling.solve_strictly().is_ok() && all_stick(settling) {

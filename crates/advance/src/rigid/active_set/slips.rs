@@ -20,7 +20,7 @@ use halfgap_contact::{InverseInertia, Solution};
 
 /// Share [-] by which the bounds of a problem are less than those that count. A contact that is this near its bound and slips by mistake
 /// is slowed down, and stops at once.
-const NARROWED: f64 = 1e-7;
+pub(super) const NARROWED: f64 = 1e-7;
 /// Share [-] of the largest acceleration, or of that by the force that presses, from which a slip accelerates: between what solutions
 /// are off, and what a contact at its bound does where bounds are less by [`NARROWED`].
 const MOVES: f64 = 3e-13;
