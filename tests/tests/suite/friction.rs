@@ -41,6 +41,20 @@ fn errors_fall_with_the_tolerance() {
     }
 }
 
+#[test]
+fn a_pile_that_is_struck_again_and_again_goes_by_steps() {
+    // 200 discs are dropped: event by event this takes minutes.
+    let scene = Scene::read(data("scenes/exact__pile_200.json")).expect("the scene can be read");
+    let run = RunData { tolerance: Some(1e-4), duration: 0.5, ..scene.run.clone() };
+    let scene = Scene { run, expected: Vec::new(), ..scene };
+    let mut world = World::from_scene(&scene).expect("it can be built");
+    world.advance_to(0.5, &mut |_| ()).expect("it goes on");
+    let (statistics, ledger) = (world.statistics(), world.ledger());
+    assert!(statistics.region_steps > 10, "{} steps", statistics.region_steps);
+    assert!(ledger.steps < 0.0 && ledger.friction < 0.0 && ledger.impact_friction < 0.0, "{ledger:?}");
+    assert!(ledger.integration_error().abs() < 1e-6 * world.energy().total().abs(), "{ledger:?}");
+}
+
 /// A disc on a floor, with friction.
 fn disc(speed: f64, spin: f64, more: &str) -> World {
     world_of(&format!(
