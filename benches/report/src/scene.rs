@@ -321,19 +321,17 @@ impl Shape {
 }
 
 impl Body {
+    /// An elastic body without friction.
+    fn smooth(name: &str, shape: Shape, inertia: Option<Inertia>, start: BodyState) -> Self {
+        let name = name.to_owned();
+        Self { name, shape, inertia, start, elasticity: 1.0, surface: Surface::SMOOTH, spin: 0.0 }
+    }
+
     /// A fixed body with the origin of its shape at a place [m].
     #[must_use]
     pub fn fixed(name: &str, shape: Shape, position: DVec2) -> Self {
         let start = BodyState { position, ..BodyState::default() };
-        Self {
-            name: name.to_owned(),
-            shape,
-            inertia: None,
-            start,
-            elasticity: 1.0,
-            surface: Surface::SMOOTH,
-            spin: 0.0,
-        }
+        Self::smooth(name, shape, None, start)
     }
 
     /// A disc of uniform density and a given mass [kg] that moves without turning.
@@ -342,15 +340,7 @@ impl Body {
         let start = BodyState { position, velocity, ..BodyState::default() };
         let inertia = Some(Inertia { mass, moment: 0.5 * mass * radius * radius });
         let shape = Shape::Disc { radius };
-        Self {
-            name: name.to_owned(),
-            shape,
-            inertia,
-            start,
-            elasticity: 1.0,
-            surface: Surface::SMOOTH,
-            spin: 0.0,
-        }
+        Self::smooth(name, shape, inertia, start)
     }
 
     /// A rectangle of uniform density and a given mass [kg].
@@ -358,15 +348,7 @@ impl Body {
     pub fn block(name: &str, size: DVec2, mass: f64, start: BodyState) -> Self {
         let inertia = Some(Inertia { mass, moment: mass * size.length_squared() / 12.0 });
         let shape = Shape::Block { width: size.x, height: size.y };
-        Self {
-            name: name.to_owned(),
-            shape,
-            inertia,
-            start,
-            elasticity: 1.0,
-            surface: Surface::SMOOTH,
-            spin: 0.0,
-        }
+        Self::smooth(name, shape, inertia, start)
     }
 
     /// A convex polygon about its centroid, grown by a radius [m], of uniform density [kg/m^2].
@@ -380,16 +362,7 @@ impl Body {
         let mass = density * of_shape.area;
         let inertia = Inertia { mass, moment: mass * of_shape.moment_per_mass };
         let shape = Shape::Rounded { corners: corners.to_vec(), radius };
-        let name = name.to_owned();
-        Self {
-            name,
-            shape,
-            inertia: Some(inertia),
-            start,
-            elasticity: 1.0,
-            surface: Surface::SMOOTH,
-            spin: 0.0,
-        }
+        Self::smooth(name, shape, Some(inertia), start)
     }
 
     /// The body with friction.
