@@ -23,9 +23,14 @@ pub(crate) fn row_forces(
     books: &Books,
     time: Time,
 ) -> Vec<RowForce> {
-    let mut stage = groups.stage().clone();
     let mut found = Vec::new();
-    for group in groups.by_leader().iter().flatten() {
+    let groups_with_rows =
+        || groups.by_leader().iter().flatten().filter(|group| group.rows().len() + group.spares().len() > 0);
+    if groups_with_rows().next().is_none() {
+        return found;
+    }
+    let mut stage = groups.stage().clone();
+    for group in groups_with_rows() {
         let (start, mut group) = (group.start(), group.clone());
         let mut dynamics =
             Dynamics { physics: physics(assembly, connectors), group: &mut group, stage: &mut stage, start };
