@@ -21,11 +21,13 @@ pub(crate) struct FrictionMethods {
     settings: Settings,
     modes: Modes,
     lemke: Lemke,
+    warm: WarmStart,
+    refined: Solution,
 }
 
 impl FrictionMethods {
     pub(crate) fn new(settings: Settings) -> Result<Self, SettingsError> {
-        Ok(Self { settings, modes: Modes::new(settings)?, lemke: Lemke::new(settings)? })
+        Ok(Self { settings, modes: Modes::new(settings)?, lemke: Lemke::new(settings)?, ..Self::default() })
     }
 
     /// Accepts answers with a natural residual up to this.
@@ -42,7 +44,21 @@ impl FrictionMethods {
 
     /// Solves by Lemke's method alone; false if it finds no answer.
     pub(crate) fn solve_by_lemke(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
-        self.lemke.solve(problem, solution).is_ok()
+        let is_solved = self.lemke.solve(problem, solution).is_ok();
+        if is_solved {
+            self.refine(problem, solution);
+        }
+        is_solved
+    }
+
+    /// Replaces an answer by that of its modes, if these have one: rows at rest are so to rounding then.
+    fn refine(&mut self, problem: &Problem, solution: &mut Solution) {
+        self.warm.guess_forces(solution.force.iter().map(|&force| Some(force)));
+        if self.modes.solve_near(problem, &self.warm, &mut self.refined).is_ok() {
+            let method = solution.method;
+            std::mem::swap(solution, &mut self.refined);
+            solution.method = method;
+        }
     }
 
     /// Solves by modes; else by Lemke's method, which may prove that there is no solution; else by trying all modes.
@@ -61,7 +77,10 @@ impl FrictionMethods {
             return Err(error);
         }
         let error = match self.lemke.solve(problem, solution) {
-            Ok(()) => return Ok(()),
+            Ok(()) => {
+                self.refine(problem, solution);
+                return Ok(());
+            }
             Err(proof @ SolveError::Infeasible(_)) => return Err(proof),
             Err(_) => error,
         };

@@ -179,15 +179,17 @@ impl Modes {
                 continue;
             }
             if epsilon <= TELLING {
-                if self.is_accepted(problem, solution) {
-                    return true;
-                }
                 self.kept.clone_from(&self.force);
+                let is_accepted = self.is_accepted(problem, solution);
                 rest = solution.residuals.natural;
+                // With modes, rows at rest are so to rounding.
                 if self.settle(problem, solution) {
                     return true;
                 }
                 self.force.clone_from(&self.kept);
+                if is_accepted {
+                    return self.is_accepted(problem, solution);
+                }
             }
             epsilon = (HARDER * epsilon).max(floor);
             floor = (FORGOTTEN * floor).max(FINEST);
@@ -198,6 +200,9 @@ impl Modes {
     /// Checks the forces, cut to their bounds, as the answer.
     fn is_accepted(&mut self, problem: &Problem, solution: &mut Solution) -> bool {
         solution.reset(problem.len(), Method::Modes);
+        if self.force.iter().any(|force| !force.is_finite()) {
+            return false;
+        }
         for row in 0..problem.len() {
             let force = mode::cut(&self.rows, row, &self.force);
             solution.force[row] = force / self.rows.scale[row];

@@ -128,14 +128,14 @@ fn is_seen(assembly: &Assembly, record: &Collision) -> bool {
 
 /// The lower end [m] of the zone in which a row is active. Ropes and stops, which are taut at 0, must not exceed their
 /// ends by more than `accuracy`, however they sink.
-fn lower_end(record: &Collision) -> f64 {
+pub(crate) fn lower_end(record: &Collision) -> f64 {
     let Tolerances { target_gap, accuracy, .. } = record.tolerances;
     if record.connector().is_some() { -HALF_ZONE * accuracy } else { target_gap - accuracy }
 }
 
 /// Depth below its zone from which a row is lifted, as a multiple of the distance by which a contact sinks at a time: a
 /// row that has just been lifted may sink once.
-const SUNK: f64 = 1.5;
+pub(crate) const SUNK: f64 = 1.5;
 
 /// Force of a contact that is rounding, as a fraction of the loads of its bodies; such a contact need not be active. A
 /// little more may keep a body in balance: a brick on the joint of two others, which stands on corners next to each

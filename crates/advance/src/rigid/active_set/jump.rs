@@ -4,7 +4,7 @@ use crate::rigid::active_set::painleve::change_along;
 use crate::rigid::active_set::posing::{accelerate_region, pose_problem};
 use crate::rigid::active_set::settle::may_carry_force;
 use crate::rigid::active_set::settling::Settling;
-use crate::rigid::active_set::slips::Slip;
+use crate::rigid::active_set::slips::{MOVES, Slip};
 use crate::rigid::group::stage::Stage;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
@@ -60,7 +60,9 @@ fn find_within(
     stage: &mut Stage,
     share: f64,
 ) -> Found {
-    let Some(impulses) = find_impulses(view, region, settling, stage, share) else { return Found::Nothing };
+    let Some((impulses, largest)) = find_impulses(view, region, settling, stage, share) else {
+        return Found::Nothing;
+    };
     let of_forces = std::mem::replace(&mut settling.solution.force, impulses);
     find_changes(view, region, settling);
     if gain_of(view, region, &settling.pushed) > 0.0 {
@@ -71,13 +73,14 @@ fn find_within(
             return Found::Nothing;
         }
     }
-    let rest = view.assembly.rest_speed();
+    let rest = view.assembly.slip_rest();
     if settling.slips.iter().any(|slip| change_of(region, slip, &settling.pushed).abs() > rest) {
         return Found::Jump;
     }
     settling.solution.force = of_forces;
-    let any_opens = drop_loose(settling);
-    let any_slips = let_slip(settling, rest);
+    let least = MOVES * largest;
+    let any_opens = drop_loose(settling, least);
+    let any_slips = let_slip(settling, rest, least);
     if any_opens || any_slips { Found::FewerSticks } else { Found::Nothing }
 }
 
@@ -111,15 +114,17 @@ fn gain_of(view: &View<'_>, region: &Region, changes: &[[f64; 3]]) -> f64 {
     gain - ROUNDED * terms
 }
 
-/// Notes the records that have no force in the last solution, in which there were forces. False if they were known.
-fn drop_loose(settling: &mut Settling) -> bool {
+/// Notes the records that have no force in the last solution, in which there were forces, and open at more than a speed `least` [m/s].
+/// False if they were known.
+fn drop_loose(settling: &mut Settling, least: f64) -> bool {
     let Settling { candidates, solution, problem, loose, .. } = settling;
     if solution.force.len() < candidates.len() {
         return false;
     }
     let before = loose.len();
     for (place, &record) in candidates.iter().enumerate() {
-        let is_loose = solution.force[place] == 0.0 && !problem.bilateral()[place];
+        let opens = solution.force[place] == 0.0 && solution.acceleration[place] > least;
+        let is_loose = opens && !problem.bilateral()[place];
         if is_loose && !loose.contains(&record) {
             loose.push(record);
         }
@@ -127,13 +132,13 @@ fn drop_loose(settling: &mut Settling) -> bool {
     loose.len() > before
 }
 
-/// Notes the contacts without slip, up to a speed `rest` [m/s], that slip in the last solution, in which friction has its kinetic bounds
-/// only. False if they were known.
-fn let_slip(settling: &mut Settling, rest: f64) -> bool {
+/// Notes the contacts without slip, up to a speed `rest` [m/s], that slip by more than a speed `least` in the last solution, in which
+/// friction has its kinetic bounds only. False if they were known.
+fn let_slip(settling: &mut Settling, rest: f64, least: f64) -> bool {
     let Settling { solution, slips, yielding, .. } = settling;
     let before = yielding.len();
     for slip in slips.iter().filter(|slip| slip.row.rate.abs() <= rest) {
-        let side = slip.side_in(solution, slip.kinetic, 0.0);
+        let side = slip.side_in(solution, slip.kinetic, least);
         let is_known = yielding.iter().any(|(record, axis, _)| (*record, *axis) == (slip.record, slip.axis));
         yielding.extend(side.filter(|_| !is_known).map(|side| (slip.record, slip.axis, side)));
     }
@@ -141,14 +146,14 @@ fn let_slip(settling: &mut Settling, rest: f64) -> bool {
 }
 
 /// The impulses of a jump, zero up to rounding if there is none: then the last solution has forces, up to a factor. `None` if no impulses
-/// were found.
+/// were found. Also the largest rate [m/s] with which the last solution began.
 fn find_impulses(
     view: &View<'_>,
     region: &Region,
     settling: &mut Settling,
     stage: &mut Stage,
     share: f64,
-) -> Option<Vec<f64>> {
+) -> Option<(Vec<f64>, f64)> {
     let assembly = view.assembly;
     settling.candidates.clear();
     let records = || region.records().iter().enumerate();
@@ -160,10 +165,10 @@ fn find_impulses(
     settling.jumps = false;
     let Settling { problem, solution, solver, candidates, slips, .. } = settling;
     let normal = candidates.iter().map(|&index| region.records()[index].motion.normal_velocity);
-    let steps = &assembly.settings().steps;
     // Rates that are rounding count as much as what forces do in so short a moment.
-    let sound = |rate: f64| if rate.abs() > ROUNDED * steps.speed { rate } else { 0.0 };
+    let sound = |rate: f64| if rate.abs() > assembly.slip_rest() { rate } else { 0.0 };
     let rates: Vec<f64> = normal.chain(slips.iter().map(|slip| slip.row.rate)).map(sound).collect();
+    let steps = &assembly.settings().steps;
     let moment = share * steps.length / steps.speed;
     let mut find = |moment: f64| {
         let found = Jump::find(problem, &rates, moment, solver, solution);
@@ -171,5 +176,7 @@ fn find_impulses(
     };
     // What forces do in the moment is no part of the jump. What opens in the shorter moment has no force.
     let (whole, half) = (find(moment)?, find(0.5 * moment)?);
-    Some(half.iter().zip(whole).map(|(half, whole)| 2.0 * half - whole).collect())
+    let ends = rates.iter().zip(problem.offset()).map(|(rate, b)| (rate + 0.5 * moment * b).abs());
+    let largest = ends.fold(0.0, f64::max);
+    Some((half.iter().zip(whole).map(|(half, whole)| 2.0 * half - whole).collect(), largest))
 }

@@ -11,6 +11,7 @@ use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::NEGLIGIBLE;
+use crate::rigid::zeno::memory::StoppedSlip;
 use halfgap_collision::BodyId;
 use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
@@ -54,6 +55,9 @@ pub(crate) struct Settling {
     /// Records whose contacts have begun to slip in this event, with the axis and the side to which they do.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) given_way: Vec<(usize, Axis, f64)>,
+    /// Slips that have come to a stop at the time of the event.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) stopped: Vec<StoppedSlip>,
     /// Records of contacts whose motion is not unique, with the speeds [m/s] at which they slip.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) undecided: Vec<(usize, f64)>,
@@ -125,6 +129,7 @@ impl Default for Settling {
             loose: Vec::new(),
             yielding: Vec::new(),
             given_way: Vec::new(),
+            stopped: Vec::new(),
             undecided: Vec::new(),
             excluded: Vec::new(),
             levers: Levers::default(),
@@ -299,6 +304,12 @@ impl Settling {
     pub(crate) fn forget_loose(&mut self) {
         self.loose.clear();
         self.yielding.clear();
+    }
+
+    /// Sets the slips that have come to a stop at the time of the event: they do not go on to the same side.
+    pub(crate) fn set_stopped(&mut self, stopped: &[StoppedSlip]) {
+        self.stopped.clear();
+        self.stopped.extend_from_slice(stopped);
     }
 
     /// True if a candidate slips.

@@ -10,7 +10,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::friction::{Axis, Grip, slip_of};
 use crate::rigid::contacts::rolling::turn_of;
-use crate::rigid::contacts::touch::Touch;
+use crate::rigid::contacts::touch::{Touch, sorted};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::ROUNDED_FORCE;
@@ -23,7 +23,7 @@ use halfgap_contact::{InverseInertia, Solution};
 pub(super) const NARROWED: f64 = 1e-7;
 /// Share [-] of the largest acceleration, or of that by the force that presses, from which a slip accelerates: between what solutions
 /// are off, and what a contact at its bound does where bounds are less by [`NARROWED`].
-const MOVES: f64 = 3e-13;
+pub(super) const MOVES: f64 = 3e-13;
 
 /// The friction of a candidate along an axis.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ pub(super) fn list_slips(
     if !assembly.any_friction() {
         return;
     }
-    let rest = assembly.rest_speed().max(2.0 * speed_of_stopped(assembly, connectors, region));
+    let rest = assembly.slip_rest().max(2.0 * speed_of_stopped(assembly, connectors, region));
     for (place, &record) in candidates.iter().enumerate() {
         slips.extend(Axis::ALL.into_iter().filter_map(|axis| {
             let resistance = resistance_of(assembly, connectors, &region.records()[record], axis)?;
@@ -141,7 +141,7 @@ fn side_given(given_way: &[(usize, Axis, f64)], record: usize, axis: Axis) -> Op
 /// Slip speed [m/s] that is left of a contact whose slip has come to a stop, by the error of the step that led there; 0 if the event
 /// is another.
 fn speed_of_stopped(assembly: &Assembly, connectors: &Connectors, region: &Region) -> f64 {
-    let Cause::Stopped(stopped, axis, _) = region.cause() else { return 0.0 };
+    let Cause::Stopped(stopped, axis) = region.cause() else { return 0.0 };
     let record = region.records().iter().find(|record| Touch::of(record) == Some(stopped));
     let resistance = record.and_then(|record| resistance_of(assembly, connectors, record, axis));
     resistance.map_or(0.0, |(row, _)| row.rate.abs())
@@ -154,14 +154,14 @@ fn speed_of_stopped(assembly: &Assembly, connectors: &Connectors, region: &Regio
 /// bounds now here, now there. So the bounds of the problem are a little less than those that count, and who cannot stick
 /// accelerates. A contact whose slip has just come to a stop does not go on to the same side.
 pub(super) fn give_way(region: &Region, settling: &mut Settling) -> bool {
-    let Settling { slips, given_way, solution, problem, slack, .. } = settling;
+    let Settling { slips, given_way, stopped, solution, problem, slack, .. } = settling;
     let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
     let mut is_new = false;
     for slip in slips.iter().filter(|slip| slip.side.is_none()) {
         let record = slip.record;
         let Some(side) = slip.gives_way(solution, largest, *slack) else { continue };
-        let stopped = region.cause().stopped(region.records()[record].bodies(), slip.axis);
-        if stopped != Some(side > 0.0) {
+        let [a, b] = region.records()[record].bodies();
+        if !stopped.contains(&(sorted(a, b), slip.axis, side > 0.0)) {
             given_way.push((record, slip.axis, side));
             is_new |= slip.kinetic < slip.sticking;
         }

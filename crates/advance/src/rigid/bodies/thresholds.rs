@@ -1,13 +1,18 @@
 //! Thresholds by which rest and depth are judged.
 
 use crate::rigid::bodies::assembly::Assembly;
-use crate::rigid::shares::{LARGE, NEGLIGIBLE, TINY};
+use crate::rigid::shares::{LARGE, NEGLIGIBLE, ROUNDED, TINY};
 use halfgap_collision::{BodyId, Collision, Tolerances};
 
 impl Assembly {
     /// Largest rate [m/s] at which a row counts as neither closing nor opening.
     pub(crate) fn rest_speed(&self) -> f64 {
         self.settings.rest_speed
+    }
+
+    /// Largest slip speed [m/s] that is rounding, or rest.
+    pub(crate) fn slip_rest(&self) -> f64 {
+        self.rest_speed().max(ROUNDED * self.settings.steps.speed)
     }
 
     /// Largest rate [m/s] at which a touching contact counts as resting at the start: with it, a contact leaves the

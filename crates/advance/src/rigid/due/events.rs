@@ -76,11 +76,12 @@ pub(crate) fn handle_contact(
 
 /// Handles the end of a group's segment, natural or early.
 pub(crate) fn handle_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), AdvanceError> {
-    if rooms.zeno.has_collapsed(leader, rooms.assembly.now())
-        && group_of(&rooms.assembly, &rooms.groups, leader).is_none()
+    if group_of(&rooms.assembly, &rooms.groups, leader).is_none()
+        && rooms.zeno.collapsed(leader, rooms.assembly.now()).is_some()
     {
         return with_work(rooms, Cause::Collapsed, |rooms, work| {
-            work.seed([leader]);
+            let bodies = rooms.zeno.collapsed(leader, rooms.assembly.now());
+            work.seed(bodies.into_iter().flatten().copied());
             handle_change(rooms, work)
         });
     }
@@ -144,7 +145,8 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
         SegmentEnd::SlipStop(row, axis) => {
             let row = &group.rows()[row];
             if let (Some(touch), Grip::Slips { side, .. }) = (row.touch(), row.grip(axis)) {
-                work.region.set_cause(Cause::Stopped(touch, axis, side > 0.0));
+                work.region.set_cause(Cause::Stopped(touch, axis));
+                rooms.zeno.note_stop((touch.bodies, axis, side > 0.0), rooms.assembly.now());
             }
             handle_change(rooms, work)
         }

@@ -135,7 +135,7 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
         let error = step_error(&rooms.assembly, &group, failure);
         give_up(&mut rooms.assembly, &mut rooms.connectors, &group);
         let may_jump = matches!(failure, StepFailure::Collapsed(_)) && group.slips();
-        if may_jump && rooms.zeno.note_collapse(leader, group.start()) {
+        if may_jump && rooms.zeno.note_collapse(leader, group.bodies(), group.start()) {
             rooms.agenda.set(Source::Group(leader), group.start());
             return Ok(());
         }

@@ -5,9 +5,13 @@
 //! active contacts of the event's region to their target, and leaves no other that rests below it. It is far less than a zone that can be
 //! seen; where zones can be seen, contacts are held where they formed, as bodies would be lifted visibly again and again.
 //!
+//! Contacts that carry no force sink a little each time they are touched; one that lies below its zone is lifted with the others.
+//!
 //! *Invariant*: after an event no active contact is farther from its target than it was, or than its zone; none of a region where all could be
 //! brought there is off by more than a minor part of the zone.
 
+use crate::rigid::active_set::choosing::{SUNK, lower_end};
+use crate::rigid::active_set::settle::may_carry_force;
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::contacts::touch::Touch;
@@ -58,6 +62,12 @@ fn is_one(assembly: &Assembly, record: &Collision) -> bool {
     Touch::of(record).is_some() && !assembly.is_zone_seen(record.bodies())
 }
 
+/// True for a contact that has sunk below its zone: it is lifted before the search takes it for the far side of a body.
+fn lies_deep(assembly: &Assembly, record: &Collision) -> bool {
+    may_carry_force(assembly, record)
+        && record.gap_state().is_sunk_below(lower_end(record) - SUNK * record.tolerances.sink())
+}
+
 /// Largest distance [m] of an active contact from its target.
 fn farthest(assembly: &Assembly, region: &Region, settling: &Settling) -> f64 {
     let active = settling.active().iter().map(|&(index, _)| &region.records()[index]);
@@ -69,7 +79,9 @@ fn farthest(assembly: &Assembly, region: &Region, settling: &Settling) -> f64 {
 /// Sets up the least displacement that brings the active contacts to their target; false if they are there.
 fn pose(assembly: &Assembly, region: &Region, settling: &Settling, lift: &mut Lift) -> bool {
     let minor = MINOR * assembly.settings().tolerances.accuracy;
-    if farthest(assembly, region, settling) <= minor {
+    let any_lies_deep =
+        region.records().iter().any(|record| is_one(assembly, record) && lies_deep(assembly, record));
+    if farthest(assembly, region, settling) <= minor && !any_lies_deep {
         return false;
     }
     region.begin(&mut lift.problem, |body| assembly.inertia(body));

@@ -18,6 +18,9 @@ pub(crate) fn settle_and_still(rooms: &mut Rooms, work: &mut EventWork) -> Resul
     let EventWork { region, settling, .. } = &mut *work;
     settling.set_likely(region.records().iter().map(|record| is_likely(&rooms.pairs, record)));
     settling.expect_forces(region, &rooms.books.told().changes().end);
+    // Where a slip has come to a stop, those that did so at the same time just before do not go on either; anything else changes all.
+    let is_stop = matches!(region.cause(), Cause::Stopped(..));
+    settling.set_stopped(if is_stop { rooms.zeno.stopped(rooms.assembly.now()) } else { &[] });
     let is_on = rooms.assembly.remedies().is_on(Remedy::LowHops);
     let may_hop = is_on && work.region.cause() != Cause::Start && !work.region.is_hasty();
     settle_region(rooms, work, may_hop)?;

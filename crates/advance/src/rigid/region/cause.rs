@@ -1,8 +1,8 @@
 //! The cause of an event.
 
 use crate::rigid::contacts::friction::Axis;
-use crate::rigid::contacts::touch::{Touch, sorted};
-use halfgap_collision::{BodyId, ConnectorId};
+use crate::rigid::contacts::touch::Touch;
+use halfgap_collision::ConnectorId;
 
 /// Cause of an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,8 +17,8 @@ pub(crate) enum Cause {
     RunOff(Touch),
     /// A contact has lost its force: a small force found on it now may come from the motion of other bodies meanwhile.
     Released(Touch),
-    /// The slip of a contact along an axis has come to a stop; it went to the positive side or not.
-    Stopped(Touch, Axis, bool),
+    /// The slip of a contact along an axis has come to a stop.
+    Stopped(Touch, Axis),
     /// The steps of a group have become endlessly short while its contacts slip: their forces grow beyond all bounds.
     Collapsed,
     /// Sunk contacts are put back, where contacts carry impulses only.
@@ -39,11 +39,5 @@ impl Cause {
     /// The contact that has run off its features, if one has.
     pub(crate) fn run_off(self) -> Option<Touch> {
         if let Self::RunOff(touch) = self { Some(touch) } else { None }
-    }
-
-    /// The side to which the slip between two bodies along an axis went that has come to a stop, if one has: true for the positive one.
-    pub(crate) fn stopped(self, bodies: [BodyId; 2], axis: Axis) -> Option<bool> {
-        let Self::Stopped(touch, along, is_positive) = self else { return None };
-        (touch.bodies == sorted(bodies[0], bodies[1]) && along == axis).then_some(is_positive)
     }
 }

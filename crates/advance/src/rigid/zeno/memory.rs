@@ -1,6 +1,7 @@
 //! The past that the limits decide by, for each body and for the system.
 
 use crate::rigid::bodies::instant::is_same_time;
+use crate::rigid::contacts::friction::Axis;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::zeno::budget::Spent;
 use crate::rigid::zeno::stepped::AllStepped;
@@ -22,8 +23,10 @@ pub(crate) struct Zeno {
     pub(super) last_insistent: Option<Time>,
     /// Time at which a group was last ended as soon as it was made, because one of its contacts pulled.
     pub(super) last_pull: Option<Time>,
-    /// Leaders of groups whose steps collapsed while contacts slipped, and when that last was.
-    pub(super) collapsed: (Option<Time>, Vec<BodyId>),
+    /// Groups whose steps collapsed while contacts slipped, each a leader and its bodies, and when that last was.
+    pub(super) collapsed: (Option<Time>, Vec<(BodyId, Vec<BodyId>)>),
+    /// Slips that have come to a stop, each with its axis and the side to which it went, and when the last did.
+    pub(super) stopped: (Option<Time>, Vec<StoppedSlip>),
     /// [`AdvanceError::Crawls`] or [`AdvanceError::TooFast`], to be returned once the present event is over; the system
     /// stays valid.
     pub(super) crawls: Option<AdvanceError>,
@@ -32,6 +35,9 @@ pub(crate) struct Zeno {
     /// The regions that are in a step.
     stepped: AllStepped,
 }
+
+/// A slip between two bodies that has come to a stop: the bodies, the axis, and true if it went to the positive side.
+pub(crate) type StoppedSlip = ([BodyId; 2], Axis, bool);
 
 impl Zeno {
     /// The regions that are in a step.
@@ -56,22 +62,40 @@ impl Zeno {
         self.last_pull = Some(now);
     }
 
-    /// Notes that the steps of a group, which a body leads, have collapsed; false if they have before at the same time.
-    pub(crate) fn note_collapse(&mut self, leader: BodyId, now: Time) -> bool {
-        let (last, leaders) = &mut self.collapsed;
+    /// Notes that the steps of a group of some bodies, which one of them leads, have collapsed; false if they have before at the same time.
+    pub(crate) fn note_collapse(&mut self, leader: BodyId, bodies: &[BodyId], now: Time) -> bool {
+        let (last, groups) = &mut self.collapsed;
         if !last.is_some_and(|last| is_same_time(last, now)) {
-            leaders.clear();
+            groups.clear();
         }
         *last = Some(now);
-        let is_new = !leaders.contains(&leader);
-        leaders.push(leader);
+        let is_new = !groups.iter().any(|(other, _)| *other == leader);
+        groups.push((leader, bodies.to_vec()));
         is_new
     }
 
-    /// True if the steps of a group that a body led have collapsed at a time.
-    pub(crate) fn has_collapsed(&self, leader: BodyId, now: Time) -> bool {
-        let (last, leaders) = &self.collapsed;
-        last.is_some_and(|last| is_same_time(last, now)) && leaders.contains(&leader)
+    /// Notes that a slip has come to a stop.
+    pub(crate) fn note_stop(&mut self, slip: StoppedSlip, now: Time) {
+        let (last, slips) = &mut self.stopped;
+        if !last.is_some_and(|last| is_same_time(last, now)) {
+            slips.clear();
+        }
+        *last = Some(now);
+        slips.push(slip);
+    }
+
+    /// The slips that have come to a stop at a time.
+    pub(crate) fn stopped(&self, now: Time) -> &[StoppedSlip] {
+        let (last, slips) = &self.stopped;
+        if last.is_some_and(|last| is_same_time(last, now)) { slips } else { &[] }
+    }
+
+    /// The bodies of the group that a body led, if its steps have collapsed at a time.
+    pub(crate) fn collapsed(&self, leader: BodyId, now: Time) -> Option<&[BodyId]> {
+        let (last, groups) = &self.collapsed;
+        let is_now = last.is_some_and(|last| is_same_time(last, now));
+        let mut latest_first = groups.iter().rev().filter(|_| is_now);
+        latest_first.find(|(other, _)| *other == leader).map(|(_, bodies)| bodies.as_slice())
     }
 
     /// Takes out the error that is to be returned once the present event is over.
@@ -94,6 +118,7 @@ impl Zeno {
             last_insistent: None,
             last_pull: None,
             collapsed: (None, Vec::new()),
+            stopped: (None, Vec::new()),
             crawls: None,
             spent: vec![Spent::default(); body_count],
             stepped: AllStepped::new(body_count),

@@ -199,8 +199,14 @@ impl Impact {
         self.finish_rough(rough, small)
     }
 
-    /// Stops rows that are still violated. Rates have the rounding of the fastest slip, however slowly the rows close.
+    /// Stops rows that are still violated: first as exactly as they can be; then rates may have the rounding of the fastest slip, however
+    /// slowly the rows close.
     fn finish_rough(&mut self, rough: &mut Rough, small: f64) -> Result<(), ImpactError> {
+        for _ in 0..FINAL_PASSES {
+            if !self.is_any_violated(small) || self.stop_rough(rough, &self.all_movable()).is_err() {
+                break;
+            }
+        }
         let square =
             |row: &CollisionRow| -> f64 { row.jacobian.iter().zip(&row.response).map(|(j, r)| j * r).sum() };
         let longest = self.rows.iter().map(square).fold(0.0, f64::max).sqrt();
