@@ -4,11 +4,14 @@ use super::bodies::Bodies;
 use super::mass;
 use crate::builder::WorldBuilder;
 use crate::force::{
-    Anchor, ConstantForce, Dashpot, ForceFrame, MutualGravity, Push, RotatingForce, Spring, Turning,
+    Anchor, ConstantForce, Dashpot, ForceFrame, ForceLaw, MutualGravity, PointForce, PointPush, Push,
+    RotatingForce, Spring, TorsionDamper, TorsionSpring, Turning, Varied,
 };
 use crate::scene::{
-    ConstantData, FieldPath, ForceData, MutualGravityData, PointData, RotatingData, SceneError, SpringData,
+    ConstantData, FieldPath, ForceData, MutualGravityData, PointData, PushData, RotatingData, SceneError,
+    SpringData, TorsionSpringData, VaryData,
 };
+use glam::DVec2;
 use std::sync::Arc;
 
 /// Adds a law; all bodies have been added before, in the order of the scene.
@@ -18,30 +21,35 @@ pub(super) fn add(
     (index, force): (usize, &ForceData),
 ) -> Result<(), SceneError> {
     let field = FieldPath::top().field("force").element(index).field(force.key());
-    match force {
+    let laws: Vec<Arc<dyn ForceLaw>> = match force {
         ForceData::Gravity(gravity) => {
             for (body, _) in bodies.acted_on(force) {
                 builder.add_gravity(body, gravity.acceleration.into());
             }
+            Vec::new()
         }
         ForceData::Damping(damping) => {
             for (body, _) in bodies.acted_on(force) {
                 builder.add_damping(body, damping.linear, damping.angular);
             }
+            Vec::new()
         }
         ForceData::MutualGravity(mutual) => {
-            let law = mutual_gravity(builder, (bodies, force), mutual, &field)?;
-            builder.add_force(Arc::new(law));
+            vec![Arc::new(mutual_gravity(builder, (bodies, force), mutual, &field)?)]
         }
-        ForceData::Spring(spring) => add_spring(builder, bodies, spring, &field),
-        ForceData::Constant(constant) => {
-            let law = constant_force(builder, bodies, constant, &field);
-            builder.add_force(Arc::new(law));
-        }
-        ForceData::Rotating(rotating) => {
-            let law = rotating_force(builder, bodies, rotating, &field);
-            builder.add_force(Arc::new(law));
-        }
+        ForceData::Spring(spring) => spring_laws(builder, bodies, spring, &field),
+        ForceData::Constant(constant) => vec![Arc::new(constant_force(builder, bodies, constant, &field))],
+        ForceData::Rotating(rotating) => vec![Arc::new(rotating_force(builder, bodies, rotating, &field))],
+        ForceData::Push(push) => vec![Arc::new(point_force(builder, bodies, push, &field))],
+        ForceData::TorsionSpring(spring) => torsion_laws(bodies, spring, &field),
+    };
+    let vary = force.vary().map(VaryData::to_vary).transpose();
+    let vary = vary.map_err(|error| SceneError::new(field.field("vary"), error.to_string()))?;
+    for law in laws {
+        builder.add_force(match &vary {
+            Some(vary) => Arc::new(Varied::new(law, vary.clone())),
+            None => law,
+        });
     }
     Ok(())
 }
@@ -69,16 +77,51 @@ fn mutual_gravity(
     Ok(MutualGravity::new(field.to_string(), mutual.strength, &movable, &fixed))
 }
 
-fn add_spring(builder: &mut WorldBuilder, bodies: &Bodies<'_>, spring: &SpringData, field: &FieldPath) {
+fn spring_laws(
+    builder: &WorldBuilder,
+    bodies: &Bodies<'_>,
+    spring: &SpringData,
+    field: &FieldPath,
+) -> Vec<Arc<dyn ForceLaw>> {
     let ends = [&spring.a, &spring.b].map(|end| anchor(builder, bodies, end));
+    let mut laws: Vec<Arc<dyn ForceLaw>> = Vec::new();
     if spring.stiffness > 0.0 {
-        let law = Spring::new(field.to_string(), ends, spring.rest_length, spring.stiffness);
-        builder.add_force(Arc::new(law));
+        let name = field.to_string();
+        laws.push(Arc::new(Spring::new(name, ends, spring.rest_length, spring.stiffness)));
     }
     if spring.damping > 0.0 {
-        let law = Dashpot::new(field.field("damping").to_string(), ends, spring.damping);
-        builder.add_force(Arc::new(law));
+        laws.push(Arc::new(Dashpot::new(field.field("damping").to_string(), ends, spring.damping)));
     }
+    laws
+}
+
+fn torsion_laws(
+    bodies: &Bodies<'_>,
+    spring: &TorsionSpringData,
+    field: &FieldPath,
+) -> Vec<Arc<dyn ForceLaw>> {
+    let ends = [&spring.a, &spring.b].map(|name| bodies.find(name));
+    let mut laws: Vec<Arc<dyn ForceLaw>> = Vec::new();
+    if spring.stiffness > 0.0 {
+        let name = field.to_string();
+        laws.push(Arc::new(TorsionSpring::new(name, ends, spring.rest_angle, spring.stiffness)));
+    }
+    if spring.damping > 0.0 {
+        laws.push(Arc::new(TorsionDamper::new(field.field("damping").to_string(), ends, spring.damping)));
+    }
+    laws
+}
+
+fn point_force(
+    builder: &WorldBuilder,
+    bodies: &Bodies<'_>,
+    push: &PushData,
+    field: &FieldPath,
+) -> PointForce {
+    let body = bodies.find(&push.body);
+    let point = push.point.map_or(DVec2::ZERO, |point| builder.anchor(body, point.into()).point);
+    let (force, frame, torque) = (push.force.into(), push.frame, push.torque);
+    PointForce::new(field.to_string(), body, PointPush { point, force, frame, torque })
 }
 
 fn constant_force(

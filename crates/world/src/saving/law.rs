@@ -1,7 +1,10 @@
 //! Force laws as data: those of this crate, each by its type.
 
 use super::error::SaveError;
-use crate::force::{ConstantForce, Dashpot, ForceLaw, MutualGravity, RotatingForce, Spring};
+use crate::force::{
+    ConstantForce, Dashpot, ForceLaw, MutualGravity, PointForce, RotatingForce, Spring, TorsionDamper,
+    TorsionSpring, Varied, Vary,
+};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::sync::Arc;
@@ -12,8 +15,12 @@ pub(super) enum SavedLaw {
     Constant(ConstantForce),
     Dashpot(Dashpot),
     MutualGravity(MutualGravity),
+    PointForce(PointForce),
     Rotating(RotatingForce),
     Spring(Spring),
+    TorsionDamper(TorsionDamper),
+    TorsionSpring(TorsionSpring),
+    Varied(Box<Self>, Vary),
 }
 
 impl SavedLaw {
@@ -23,11 +30,18 @@ impl SavedLaw {
     /// [`SaveError::OwnLaw`] for a law that is not one of this crate's.
     pub(super) fn of(law: &dyn ForceLaw) -> Result<Self, SaveError> {
         let any: &dyn Any = law;
+        if let Some(varied) = any.downcast_ref::<Varied>() {
+            let (law, vary) = varied.parts();
+            return Ok(Self::Varied(Box::new(Self::of(&**law)?), vary.clone()));
+        }
         None.or_else(|| any.downcast_ref().cloned().map(Self::Constant))
             .or_else(|| any.downcast_ref().cloned().map(Self::Dashpot))
             .or_else(|| any.downcast_ref().cloned().map(Self::MutualGravity))
+            .or_else(|| any.downcast_ref().cloned().map(Self::PointForce))
             .or_else(|| any.downcast_ref().cloned().map(Self::Rotating))
             .or_else(|| any.downcast_ref().cloned().map(Self::Spring))
+            .or_else(|| any.downcast_ref().cloned().map(Self::TorsionDamper))
+            .or_else(|| any.downcast_ref().cloned().map(Self::TorsionSpring))
             .ok_or_else(|| SaveError::OwnLaw { law: law.name().to_owned() })
     }
 
@@ -36,8 +50,12 @@ impl SavedLaw {
             Self::Constant(law) => Arc::new(law),
             Self::Dashpot(law) => Arc::new(law),
             Self::MutualGravity(law) => Arc::new(law),
+            Self::PointForce(law) => Arc::new(law),
             Self::Rotating(law) => Arc::new(law),
             Self::Spring(law) => Arc::new(law),
+            Self::TorsionDamper(law) => Arc::new(law),
+            Self::TorsionSpring(law) => Arc::new(law),
+            Self::Varied(law, vary) => Arc::new(Varied::new(law.into_law(), vary)),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::connector::PointData;
 use super::one_key::one_key_enum;
 use super::vector::Vector;
-use crate::force::ForceFrame;
+use crate::force::{ForceFrame, Vary, VaryError};
 use serde::Deserialize;
 
 one_key_enum! {
@@ -21,7 +21,58 @@ one_key_enum! {
         "constant" => Constant(ConstantData),
         /// A force whose direction turns at a constant rate.
         "rotating" => Rotating(RotatingData),
+        /// A force on a point of a body, which moves with it.
+        "push" => Push(PushData),
+        /// A spring between the angles of two bodies.
+        "torsion_spring" => TorsionSpring(TorsionSpringData),
     }
+}
+
+one_key_enum! {
+    /// A factor as a function of the scene's time.
+    VaryData: "vary" {
+        /// A sine.
+        "sine" => Sine(SineData),
+        /// Values at times, linear between and constant outside.
+        "table" => Table(TableData),
+        /// 1 from the first of two times [s] until the second, else 0.
+        "on" => On([f64; 2]),
+    }
+}
+
+impl VaryData {
+    /// Makes the factor.
+    ///
+    /// # Errors
+    /// Numbers that make none.
+    pub(crate) fn to_vary(&self) -> Result<Vary, VaryError> {
+        match self {
+            Self::Sine(sine) => Vary::sine(sine.frequency, sine.phase),
+            Self::Table(table) => Vary::table(table.times.clone(), table.values.clone()),
+            Self::On([from, until]) => Vary::on(*from, *until),
+        }
+    }
+}
+
+/// sin(2 pi frequency t + phase).
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SineData {
+    /// Frequency [Hz].
+    pub frequency: f64,
+    /// Phase [rad].
+    #[serde(default)]
+    pub phase: f64,
+}
+
+/// Values at times.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TableData {
+    /// Times [s], which grow.
+    pub times: Vec<f64>,
+    /// A value [-] for each.
+    pub values: Vec<f64>,
 }
 
 /// Uniform acceleration.
@@ -73,6 +124,8 @@ pub struct SpringData {
     /// Force per rate of the length [N·s/m], not negative.
     #[serde(default)]
     pub damping: f64,
+    /// A factor of the time on the stiffness and the damping; 1 if not given.
+    pub vary: Option<VaryData>,
 }
 
 /// A constant force at a point of a body, and a torque.
@@ -91,6 +144,8 @@ pub struct ConstantData {
     /// Torque besides that of the force [N·m], counter-clockwise positive.
     #[serde(default)]
     pub torque: f64,
+    /// A factor of the time on the force and the torque; 1 if not given.
+    pub vary: Option<VaryData>,
 }
 
 /// A force of constant size whose direction in the body's frame turns at a constant rate.
@@ -108,6 +163,49 @@ pub struct RotatingData {
     /// Direction in the body's frame at the start of the run [rad], from the x axis, counter-clockwise positive.
     #[serde(default)]
     pub phase: f64,
+    /// A factor of the time on the force; 1 if not given.
+    pub vary: Option<VaryData>,
+}
+
+/// A force on a point of a body, which moves with the body, and a torque.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PushData {
+    /// Name of the body.
+    pub body: String,
+    /// Point at which the force acts, in shape coordinates [m]; the centre of mass if not given.
+    pub point: Option<Vector>,
+    /// Force, in coordinates of `frame` [N].
+    #[serde(default)]
+    pub force: Vector,
+    /// Frame of the force.
+    #[serde(default)]
+    pub frame: ForceFrame,
+    /// Torque besides that of the force [N·m], counter-clockwise positive.
+    #[serde(default)]
+    pub torque: f64,
+    /// A factor of the time on the force and the torque; 1 if not given.
+    pub vary: Option<VaryData>,
+}
+
+/// A spring between the angles of two bodies.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TorsionSpringData {
+    /// Name of one body, or `"world"`.
+    pub a: String,
+    /// Name of the other, or `"world"`.
+    pub b: String,
+    /// Angle of b less that of a at which the spring exerts no torque [rad], whole turns counted.
+    #[serde(default)]
+    pub rest_angle: f64,
+    /// Torque per angle [N·m/rad], not negative.
+    pub stiffness: f64,
+    /// Torque per angular velocity [N·m·s/rad], not negative.
+    #[serde(default)]
+    pub damping: f64,
+    /// A factor of the time on the stiffness and the damping; 1 if not given.
+    pub vary: Option<VaryData>,
 }
 
 impl ForceData {
@@ -118,7 +216,20 @@ impl ForceData {
             Self::Gravity(gravity) => gravity.bodies.as_deref(),
             Self::Damping(damping) => damping.bodies.as_deref(),
             Self::MutualGravity(mutual) => mutual.bodies.as_deref(),
-            Self::Spring(_) | Self::Constant(_) | Self::Rotating(_) => None,
+            _ => None,
+        }
+    }
+
+    /// The factor of the time on the law; `None` if it has none.
+    #[must_use]
+    pub fn vary(&self) -> Option<&VaryData> {
+        match self {
+            Self::Gravity(_) | Self::Damping(_) | Self::MutualGravity(_) => None,
+            Self::Spring(spring) => spring.vary.as_ref(),
+            Self::Constant(constant) => constant.vary.as_ref(),
+            Self::Rotating(rotating) => rotating.vary.as_ref(),
+            Self::Push(push) => push.vary.as_ref(),
+            Self::TorsionSpring(spring) => spring.vary.as_ref(),
         }
     }
 }

@@ -33,7 +33,8 @@ pub use error::{Excerpt, Position, SceneError};
 pub use expected::{ExpectedData, ExpectedState};
 pub use field_path::{BadFieldPath, FieldPath, Step};
 pub use force::{
-    ConstantData, DampingData, ForceData, GravityData, MutualGravityData, RotatingData, SpringData,
+    ConstantData, DampingData, ForceData, GravityData, MutualGravityData, PushData, RotatingData, SineData,
+    SpringData, TableData, TorsionSpringData, VaryData,
 };
 pub use pair::PairData;
 pub use run_data::{RunData, StrategyData};

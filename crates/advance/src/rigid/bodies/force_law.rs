@@ -66,29 +66,40 @@ pub struct Wrench {
 
 /// The sums of forces and torques, one for each body; those of a fixed body or the background have no effect.
 #[derive(Debug)]
-pub struct Wrenches<'a>(&'a mut [Wrench]);
+pub struct Wrenches<'a> {
+    sums: &'a mut [Wrench],
+    /// What is added is taken times this.
+    factor: f64,
+}
 
 impl<'a> Wrenches<'a> {
     /// Wraps sums to which a law adds, in the order of the bodies' ids.
     #[inline]
     pub fn new(sums: &'a mut [Wrench]) -> Self {
-        Self(sums)
+        Self { sums, factor: 1.0 }
+    }
+
+    /// The same sums, to which all is added that many times: for a law that lets another vary.
+    #[must_use]
+    #[inline]
+    pub fn scaled(&mut self, factor: f64) -> Wrenches<'_> {
+        Wrenches { sums: self.sums, factor: self.factor * factor }
     }
 
     /// Adds a force [N] that acts at an arm [m] from the body's centre of mass, both in world directions.
     #[inline]
     pub fn add_force(&mut self, body: BodyId, force: DVec2, arm: DVec2) {
-        if let Some(sum) = self.0.get_mut(body.index()) {
-            sum.force += force;
-            sum.torque += arm.perp_dot(force);
+        if let Some(sum) = self.sums.get_mut(body.index()) {
+            sum.force += self.factor * force;
+            sum.torque += self.factor * arm.perp_dot(force);
         }
     }
 
     /// Adds a torque [N m], positive counter-clockwise.
     #[inline]
     pub fn add_torque(&mut self, body: BodyId, torque: f64) {
-        if let Some(sum) = self.0.get_mut(body.index()) {
-            sum.torque += torque;
+        if let Some(sum) = self.sums.get_mut(body.index()) {
+            sum.torque += self.factor * torque;
         }
     }
 }
@@ -96,7 +107,7 @@ impl<'a> Wrenches<'a> {
 /// A force law.
 ///
 /// A law must be smooth inside a step: where it changes branch, a switching function must change sign, and the step is
-/// made to end there. The functions are sampled at five moments of each step, so two changes of sign within one step may
+/// made to end there; where it does so at a known time, [`next_kink`](Self::next_kink) tells that. The functions are sampled at five moments of each step, so two changes of sign within one step may
 /// be missed, as may a smooth force that comes and goes: where forces last for a shorter time than the motion without
 /// them would take steps, bound these, by [`length`](Self::length) where forces depend on places, or by a longest step
 /// where they depend on the time.
@@ -139,6 +150,13 @@ pub trait ForceLaw: Any + Debug + Send + Sync {
     /// more than all of it, if the law names no other body.
     fn length(&self, now: &Snapshot<'_>) -> Option<f64> {
         let _ = now;
+        None
+    }
+
+    /// The first time [s] later than `after` at which the forces, as a function of the time alone, jump or have a kink; `None` if there
+    /// is none any more. A step ends there, however many there are within it.
+    fn next_kink(&self, after: f64) -> Option<f64> {
+        let _ = after;
         None
     }
 

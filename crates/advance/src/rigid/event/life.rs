@@ -223,7 +223,10 @@ pub(crate) fn is_unwatched(
     group.bodies().iter().all(|body| search.loners()[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
         && group.rows().iter().all(|row| row.bilateral && !mechanism.can_change(row))
-        && group.force_laws().iter().all(|&law| assembly.force_laws().all[law].switches() == 0)
+        && group.force_laws().iter().all(|&law| {
+            let law = &assembly.force_laws().all[law];
+            law.switches() == 0 && law.next_kink(group.start().seconds()).is_none()
+        })
 }
 
 /// Postpones the dense output of the group with this leader.

@@ -18,7 +18,7 @@ use crate::rigid::watch::overdue::find_overdue;
 use crate::rigid::watch::releases::{firm_part, look_for_release};
 use crate::rigid::watch::slips::find_slip_stop;
 use crate::rigid::watch::staying::{find_bounds, stays};
-use crate::rigid::watch::switches::{find_passing, find_stop, find_switch};
+use crate::rigid::watch::switches::{find_kink, find_passing, find_stop, find_switch};
 
 /// Largest number of searches for an end of a rail's piece that comes before the one that was found.
 const MOST_ZOOMS: usize = 16;
@@ -108,6 +108,7 @@ fn find_geometric_event(dynamics: &mut Dynamics<'_>) -> Option<(f64, SegmentEnd)
     }
     for place in 0..dynamics.group.force_laws().len() {
         let law = dynamics.group.force_laws()[place];
+        earliest.offer(find_kink(dynamics, law, dynamics.group.span()), SegmentEnd::Switch);
         for index in 0..dynamics.physics.force_laws[law].switches() {
             earliest.offer(find_switch(dynamics, law, index), SegmentEnd::Switch);
         }

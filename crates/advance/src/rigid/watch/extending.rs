@@ -6,14 +6,18 @@ use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::shares::{ROUNDINGS, ROUNDS};
 use crate::rigid::watch::early_ends::find_event;
-use crate::rigid::watch::switches::find_switch_at_end;
+use crate::rigid::watch::switches::{find_kink, find_switch_at_end};
 
 /// Extends the group by a step, and finds the event that ends it early.
 pub(crate) fn extend_watched(dynamics: &mut Dynamics<'_>, tools: &mut Tools<'_>) -> Result<(), StepFailure> {
     if !dynamics.group.is_unwatched() {
         let proposed = dynamics.group.next_step();
+        let is_limited = end_before_kink(dynamics);
         let told = dynamics.extend_on_rows(tools)?;
         dynamics.note_stiffness(tools, told);
+        if is_limited {
+            go_on_as(dynamics, proposed);
+        }
         find_event(dynamics);
         return end_before_switch(dynamics, tools, proposed);
     }
@@ -27,6 +31,24 @@ pub(crate) fn extend_watched(dynamics: &mut Dynamics<'_>, tools: &mut Tools<'_>)
     let largest_error = if is_projected { dynamics.stage.gap_error() } else { dynamics.connector_error() };
     dynamics.group.set_largest_error(largest_error);
     Ok(())
+}
+
+/// Lets the next step end just before the first kink of a law; true if it would have gone over it.
+fn end_before_kink(dynamics: &mut Dynamics<'_>) -> bool {
+    let Some(proposed) = dynamics.group.next_step() else { return false };
+    let before = dynamics.clock_ticks(ROUNDINGS);
+    let laws = dynamics.group.force_laws().iter();
+    let kinks = laws.filter_map(|&law| find_kink(dynamics, law, proposed));
+    let Some(kink) = kinks.reduce(f64::min).filter(|kink| *kink > 2.0 * before) else { return false };
+    dynamics.group.set_next_step(Some(kink - before));
+    true
+}
+
+/// Lets the next step be as long as one was proposed [s] to be that then had to be shorter.
+fn go_on_as(dynamics: &mut Dynamics<'_>, proposed: Option<f64>) {
+    if let (Some(next), Some(proposed)) = (dynamics.group.next_step(), proposed) {
+        dynamics.group.set_next_step(Some(next.max(proposed)));
+    }
 }
 
 /// Makes a step over a change of a law's branch anew, so that it ends just before the change. Stages beyond it have
@@ -49,9 +71,7 @@ fn end_before_switch(
         dynamics.group.set_next_step(Some(offset - before));
         dynamics.extend_on_rows(tools)?;
         find_event(dynamics);
-        if let (Some(next), Some(proposed)) = (dynamics.group.next_step(), proposed) {
-            dynamics.group.set_next_step(Some(next.max(proposed)));
-        }
+        go_on_as(dynamics, proposed);
         before *= WIDER;
     }
     if dynamics.group.event().is_none() {

@@ -96,12 +96,26 @@ pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize)
     Some(beyond_switch(dynamics, (law, index), sign, offset))
 }
 
+/// Ticks of the clock after a kink at which a segment that goes over it ends: sums of clock times and offsets are rounded once more.
+const TICKS_BEYOND_KINK: f64 = 2.0;
+
+/// Offset [s] just after the first kink of a law within so many seconds of the start of the segment.
+pub(crate) fn find_kink(dynamics: &Dynamics<'_>, law: usize, reach: f64) -> Option<f64> {
+    let start = dynamics.start.seconds();
+    let kink = dynamics.physics.force_laws[law].next_kink(start)?;
+    let offset = kink - start;
+    (offset <= reach).then(|| offset + TICKS_BEYOND_KINK * dynamics.clock_ticks(1.0))
+}
+
 /// Offset [s] of the first change of sign of a switching function just after the end of the segment: so soon that the
 /// next step would have to go over it, however short. Dense output reaches that far beyond its end.
 pub(crate) fn find_switch_at_end(dynamics: &mut Dynamics<'_>) -> Option<f64> {
     let mut earliest = Earliest::default();
+    let span = dynamics.group.span();
+    let last = TICKS_AFTER_END[TICKS_AFTER_END.len() - 1] * dynamics.clock_ticks(1.0);
     for place in 0..dynamics.group.force_laws().len() {
         let law = dynamics.group.force_laws()[place];
+        earliest.offer(find_kink(dynamics, law, span + last.min(LOOK_AHEAD * span)), SegmentEnd::Switch);
         for index in 0..dynamics.physics.force_laws[law].switches() {
             earliest.offer(find_change_at_end(dynamics, law, index), SegmentEnd::Switch);
         }
