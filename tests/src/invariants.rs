@@ -453,7 +453,7 @@ fn no_energy(scene: &Scene, world: &World) -> f64 {
         world.bodies().map(|body| world.state(body).position.abs().max_element() + world.shape(body).reach());
     let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
     let lifted = CONNECTOR_TOLERANCES * scene.run.tolerance_or_default() * reach.fold(0.0, f64::max);
-    let weight: f64 = scene.forces.iter().map(gravity).sum();
+    let weight: f64 = scene.forces.iter().map(|force| gravity(&force.data)).sum();
     masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted) + forces(world) * lifted
 }
 
@@ -487,7 +487,7 @@ fn may_collide(scene: &Scene, world: &World, a: BodyId, b: BodyId) -> bool {
         let (first, second) = connector.points();
         let Some(second) = second else { return false };
         let both = (is(a, &first.body) && is(b, &second.body)) || (is(b, &first.body) && is(a, &second.body));
-        let joins = matches!(connector, ConnectorData::Pin(_) | ConnectorData::Slot(_));
+        let joins = matches!(connector.data, ConnectorData::Pin(_) | ConnectorData::Slot(_));
         both && joins && !connector.options().collide
     });
     !joined && !passes(a, b) && !passes(b, a)

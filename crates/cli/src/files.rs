@@ -1,8 +1,8 @@
 //! The folder that `--out` names: recording, result and pictures.
 
 use crate::failure::Failure;
-use halfgap::picture::{ScenePictures, energy_picture, events_picture};
-use halfgap::{Frame, Recording, RunError, RunResult, World};
+use halfgap::picture::{ScenePictures, energy_picture, events_picture, probes_picture};
+use halfgap::{Frame, Probe, ProbeTable, Recording, RunError, RunResult, World};
 use halfgap_contact::ContactFile;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -19,7 +19,7 @@ pub(crate) fn write_all(
     world: &World,
     recording: &Recording,
     result: &RunResult,
-    pictures: usize,
+    (probes, pictures): (&[Probe], usize),
 ) -> Result<(), Failure> {
     write(folder, "states.csv", |out| recording.write_states_csv(out))?;
     write(folder, "impacts.csv", |out| recording.write_impacts_csv(out))?;
@@ -28,6 +28,7 @@ pub(crate) fn write_all(
     write(folder, "energy.csv", |out| recording.write_energy_csv(out))?;
     write(folder, "recording.json", |out| recording.write_json(out))?;
     write(folder, "result.json", |out| writeln!(out, "{}", result.to_json()))?;
+    write_probes(folder, probes, world, recording)?;
     let scene = ScenePictures::new(world, recording);
     let mut ends = Vec::new();
     ends.extend(recording.frames.first().map(|frame| ("start.svg", frame)));
@@ -44,6 +45,35 @@ pub(crate) fn write_all(
     write(folder, "events.svg", |out| out.write_all(events_picture(recording).as_bytes()))
 }
 
+const PROBES: [&str; 2] = ["probes.csv", "probes.svg"];
+
+/// Writes what probes tell. Without any, what an earlier run has left is removed.
+fn write_probes(
+    folder: &Path,
+    probes: &[Probe],
+    world: &World,
+    recording: &Recording,
+) -> Result<(), Failure> {
+    let [csv, svg] = PROBES;
+    if probes.is_empty() {
+        return PROBES.into_iter().try_for_each(|name| remove(&folder.join(name)));
+    }
+    let table = ProbeTable::of(probes, world, recording);
+    write(folder, csv, |out| table.write_csv(out))?;
+    let picture = probes_picture(&recording.title, &table);
+    write(folder, svg, |out| out.write_all(picture.as_bytes()))
+}
+
+/// Removes a file that an earlier run has left, if it is there.
+fn remove(path: &Path) -> Result<(), Failure> {
+    let is_there = path.exists();
+    if is_there {
+        std::fs::remove_file(path).map_err(|error| Failure::Write(path.to_path_buf(), error))
+    } else {
+        Ok(())
+    }
+}
+
 /// Name of the contact problem that stopped a run, in its folder.
 pub(crate) const PROBLEM: &str = "problem.json";
 
@@ -52,9 +82,7 @@ pub(crate) const PROBLEM: &str = "problem.json";
 pub(crate) fn write_problem(folder: &Path, error: Option<&RunError>) -> Result<bool, Failure> {
     let path = folder.join(PROBLEM);
     let Some(RunError::Contacts { problem, .. }) = error else {
-        if path.exists() {
-            std::fs::remove_file(&path).map_err(|error| Failure::Write(path, error))?;
-        }
+        remove(&path)?;
         return Ok(false);
     };
     let text = ContactFile::of(problem).to_json();
@@ -70,10 +98,7 @@ fn picture_name(index: usize) -> String {
 /// run.
 fn remove_further(folder: &Path, count: usize) -> Result<(), Failure> {
     let left = (count..).map(|index| folder.join(picture_name(index))).take_while(|path| path.exists());
-    for path in left {
-        std::fs::remove_file(&path).map_err(|error| Failure::Write(path.clone(), error))?;
-    }
-    Ok(())
+    left.into_iter().try_for_each(|path| remove(&path))
 }
 
 /// Returns `count` frames between the first and the last, evenly over the run; all of them if there are fewer.

@@ -7,7 +7,7 @@ use crate::progress::{Progress, Shown, Way};
 use crate::repeat::Repeats;
 use crate::{files, output, table};
 use halfgap::scene::SceneSource;
-use halfgap::{Outcome, Reached, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
+use halfgap::{Outcome, Probe, Reached, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
 use std::num::NonZeroUsize;
 use std::path::Path;
 
@@ -28,6 +28,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     for warning in world.warnings() {
         output::tell(&format!("warning: {}: {warning}", options.scene.display()));
     }
+    let probes = Probe::of_scene(&scene, &world).map_err(|error| source.locate(error))?;
     let interrupt = Interrupt::listen();
     if let Some(folder) = &options.out {
         files::prepare(folder)?;
@@ -60,7 +61,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     progress.finish();
     // A failure to write is reported last, so that the results are not lost with it.
     let written = options.out.as_ref().map_or(Ok(()), |folder| {
-        files::write_all(folder, &world, &report.recording, &result, options.pictures)
+        files::write_all(folder, &world, &report.recording, &result, (&probes, options.pictures))
     });
     let problem =
         options.out.as_ref().map_or(Ok(false), |folder| files::write_problem(folder, report.error.as_ref()));

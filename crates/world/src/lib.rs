@@ -54,6 +54,7 @@ mod near;
 mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
+mod probe;
 mod query;
 #[cfg(feature = "scene")]
 mod recording;
@@ -95,6 +96,7 @@ pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
 pub use names::{short_names, short_text};
+pub use probe::{Probe, ProbeKind, ProbeTable, Quantity};
 pub use query::WorldHit;
 #[cfg(feature = "scene")]
 pub use recording::{ContactChange, ContactRecord, Frame, RecordedBody, Recording, csv_field};

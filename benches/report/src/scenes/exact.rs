@@ -48,7 +48,7 @@ fn scene(name: &str, file: &str) -> (Scene, halfgap::scene::Scene) {
     scene.collisions = data.run.collisions;
     scene.connectors = data.connectors.iter().map(|pin| connector(pin, &index)).collect();
     for force in &data.forces {
-        match force {
+        match &force.data {
             ForceData::Gravity(gravity) => scene.gravity += DVec2::from(gravity.acceleration),
             ForceData::Spring(spring) => scene.springs.push(spring_between(spring, &index)),
             _ => panic!("only gravity and springs act in {name}"),

@@ -209,6 +209,33 @@ fn out_writes_recording_and_pictures() {
 }
 
 #[test]
+fn probes_are_written_beside_the_states_and_go_with_the_scene() {
+    let folder = Folder::new("probes");
+    let body = r#"
+        format = "halfgap-scene-1"
+        title = "Spin"
+        run = { duration = 1.0, output_step = 0.5 }
+        body = [{ name = "disc", shape = { disc = { radius = 1.0 } }, mass = 2.0, angular_velocity = 4.0 }]
+        "#;
+    let probe = "[[probe]]\nname = \"rim\"\npoint = { body = \"disc\", point = [0.0, 0.0] }\n";
+    let (with, without) = (format!("{body}{probe}"), body);
+    let [with, without] = [folder.write("with.toml", &with), folder.write("without.toml", without)];
+    let out = folder.path("out");
+    assert_eq!(halfgap(&["run", &with, "--out", &out, "--quiet"]).status.code(), Some(0));
+    let read = |name: &str| std::fs::read_to_string(Path::new(&out).join(name)).expect("the file is there");
+    insta::assert_snapshot!(read("probes.csv"), @r"
+    time [s],rim x [m],rim y [m],rim vx [m/s],rim vy [m/s]
+    0.0,0.0,0.0,0.0,0.0
+    0.5,0.0,0.0,0.0,0.0
+    1.0,0.0,0.0,0.0,0.0
+    ");
+    assert!(read("probes.svg").contains("rim: vy [m/s]"));
+    assert_eq!(halfgap(&["run", &without, "--out", &out, "--quiet"]).status.code(), Some(0));
+    assert!(!Path::new(&folder.path("out/probes.csv")).exists());
+    assert!(!Path::new(&folder.path("out/probes.svg")).exists());
+}
+
+#[test]
 fn a_wrong_scene_ends_with_2_and_shows_the_line() {
     let folder = Folder::new("wrong");
     let scene = folder.write("scene.toml", &FLIGHT.replace("mass = 2.0", "mass = -2"));

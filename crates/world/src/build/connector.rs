@@ -114,7 +114,7 @@ impl<'a> Paths<'a> {
     /// True if a rail with this path is closed; stops do not repeat that field.
     fn is_closed(&self, data: &scene::RailPath) -> bool {
         let closed = |one: &ConnectorData| matches!(one, ConnectorData::Rail(rail) if rail.closed && rail.path == *data);
-        self.scene.connectors.iter().any(closed)
+        self.scene.connectors.iter().any(|one| closed(&one.data))
     }
 }
 

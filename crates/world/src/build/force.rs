@@ -1,4 +1,4 @@
-//! The force laws of a scene. The name of each is the path of its field: "force[2].spring".
+//! The force laws of a scene. The name of each that is given none is the path of its field: "force[2].spring".
 
 use super::bodies::Bodies;
 use super::mass;
@@ -8,8 +8,8 @@ use crate::force::{
     RotatingForce, Spring, TorsionDamper, TorsionSpring, Turning, Varied,
 };
 use crate::scene::{
-    ConstantData, FieldPath, ForceData, MutualGravityData, PointData, PushData, RotatingData, SceneError,
-    SpringData, TorsionSpringData, VaryData,
+    ConstantData, FieldPath, ForceData, MutualGravityData, NamedData, PointData, PushData, RotatingData,
+    SceneError, SpringData, TorsionSpringData, VaryData,
 };
 use glam::DVec2;
 use std::sync::Arc;
@@ -18,9 +18,11 @@ use std::sync::Arc;
 pub(super) fn add(
     builder: &mut WorldBuilder,
     bodies: &Bodies<'_>,
-    (index, force): (usize, &ForceData),
+    (index, named): (usize, &NamedData<ForceData>),
 ) -> Result<(), SceneError> {
+    let force = &named.data;
     let field = FieldPath::top().field("force").element(index).field(force.key());
+    let name = named.name.clone().unwrap_or_else(|| field.to_string());
     let laws: Vec<Arc<dyn ForceLaw>> = match force {
         ForceData::Gravity(gravity) => {
             for (body, _) in bodies.acted_on(force) {
@@ -35,13 +37,13 @@ pub(super) fn add(
             Vec::new()
         }
         ForceData::MutualGravity(mutual) => {
-            vec![Arc::new(mutual_gravity(builder, (bodies, force), mutual, &field)?)]
+            vec![Arc::new(mutual_gravity(builder, (bodies, force), mutual, (&name, &field))?)]
         }
-        ForceData::Spring(spring) => spring_laws(builder, bodies, spring, &field),
-        ForceData::Constant(constant) => vec![Arc::new(constant_force(builder, bodies, constant, &field))],
-        ForceData::Rotating(rotating) => vec![Arc::new(rotating_force(builder, bodies, rotating, &field))],
-        ForceData::Push(push) => vec![Arc::new(point_force(builder, bodies, push, &field))],
-        ForceData::TorsionSpring(spring) => torsion_laws(bodies, spring, &field),
+        ForceData::Spring(spring) => spring_laws(builder, bodies, spring, &name),
+        ForceData::Constant(constant) => vec![Arc::new(constant_force(builder, bodies, constant, &name))],
+        ForceData::Rotating(rotating) => vec![Arc::new(rotating_force(builder, bodies, rotating, &name))],
+        ForceData::Push(push) => vec![Arc::new(point_force(builder, bodies, push, &name))],
+        ForceData::TorsionSpring(spring) => torsion_laws(bodies, spring, &name),
     };
     let vary = force.vary().map(VaryData::to_vary).transpose();
     let vary = vary.map_err(|error| SceneError::new(field.field("vary"), error.to_string()))?;
@@ -60,7 +62,7 @@ fn mutual_gravity(
     builder: &WorldBuilder,
     (bodies, force): (&Bodies<'_>, &ForceData),
     mutual: &MutualGravityData,
-    field: &FieldPath,
+    (name, field): (&str, &FieldPath),
 ) -> Result<MutualGravity, SceneError> {
     let (mut movable, mut fixed) = (Vec::new(), Vec::new());
     for (id, body) in bodies.acted_on(force) {
@@ -74,61 +76,50 @@ fn mutual_gravity(
             None => {}
         }
     }
-    Ok(MutualGravity::new(field.to_string(), mutual.strength, &movable, &fixed))
+    Ok(MutualGravity::new(name, mutual.strength, &movable, &fixed))
 }
 
 fn spring_laws(
     builder: &WorldBuilder,
     bodies: &Bodies<'_>,
     spring: &SpringData,
-    field: &FieldPath,
+    name: &str,
 ) -> Vec<Arc<dyn ForceLaw>> {
     let ends = [&spring.a, &spring.b].map(|end| anchor(builder, bodies, end));
     let mut laws: Vec<Arc<dyn ForceLaw>> = Vec::new();
     if spring.stiffness > 0.0 {
-        let name = field.to_string();
         laws.push(Arc::new(Spring::new(name, ends, spring.rest_length, spring.stiffness)));
     }
     if spring.damping > 0.0 {
-        laws.push(Arc::new(Dashpot::new(field.field("damping").to_string(), ends, spring.damping)));
+        laws.push(Arc::new(Dashpot::new(format!("{name}.damping"), ends, spring.damping)));
     }
     laws
 }
 
-fn torsion_laws(
-    bodies: &Bodies<'_>,
-    spring: &TorsionSpringData,
-    field: &FieldPath,
-) -> Vec<Arc<dyn ForceLaw>> {
+fn torsion_laws(bodies: &Bodies<'_>, spring: &TorsionSpringData, name: &str) -> Vec<Arc<dyn ForceLaw>> {
     let ends = [&spring.a, &spring.b].map(|name| bodies.find(name));
     let mut laws: Vec<Arc<dyn ForceLaw>> = Vec::new();
     if spring.stiffness > 0.0 {
-        let name = field.to_string();
         laws.push(Arc::new(TorsionSpring::new(name, ends, spring.rest_angle, spring.stiffness)));
     }
     if spring.damping > 0.0 {
-        laws.push(Arc::new(TorsionDamper::new(field.field("damping").to_string(), ends, spring.damping)));
+        laws.push(Arc::new(TorsionDamper::new(format!("{name}.damping"), ends, spring.damping)));
     }
     laws
 }
 
-fn point_force(
-    builder: &WorldBuilder,
-    bodies: &Bodies<'_>,
-    push: &PushData,
-    field: &FieldPath,
-) -> PointForce {
+fn point_force(builder: &WorldBuilder, bodies: &Bodies<'_>, push: &PushData, name: &str) -> PointForce {
     let body = bodies.find(&push.body);
     let point = push.point.map_or(DVec2::ZERO, |point| builder.anchor(body, point.into()).point);
     let (force, frame, torque) = (push.force.into(), push.frame, push.torque);
-    PointForce::new(field.to_string(), body, PointPush { point, force, frame, torque })
+    PointForce::new(name, body, PointPush { point, force, frame, torque })
 }
 
 fn constant_force(
     builder: &WorldBuilder,
     bodies: &Bodies<'_>,
     constant: &ConstantData,
-    field: &FieldPath,
+    name: &str,
 ) -> ConstantForce {
     let body = bodies.find(&constant.body);
     let point = match constant.frame {
@@ -136,14 +127,14 @@ fn constant_force(
         ForceFrame::World => constant.point.into(),
     };
     let push = Push { frame: constant.frame, point, force: constant.force.into(), torque: constant.torque };
-    ConstantForce::new(field.to_string(), body, push)
+    ConstantForce::new(name, body, push)
 }
 
 fn rotating_force(
     builder: &WorldBuilder,
     bodies: &Bodies<'_>,
     rotating: &RotatingData,
-    field: &FieldPath,
+    name: &str,
 ) -> RotatingForce {
     let at = builder.anchor(bodies.find(&rotating.body), rotating.point.into());
     let turning = Turning {
@@ -152,7 +143,7 @@ fn rotating_force(
         phase: rotating.phase,
         start: bodies.scene.run.start_time,
     };
-    RotatingForce::new(field.to_string(), at, turning)
+    RotatingForce::new(name, at, turning)
 }
 
 pub(super) fn anchor(builder: &WorldBuilder, bodies: &Bodies<'_>, end: &PointData) -> Anchor {

@@ -11,7 +11,9 @@ pub(super) fn of(scene: &Scene, builder: &WorldBuilder) -> Vec<String> {
     let bodies = scene.bodies.iter().enumerate();
     let moved = bodies.filter_map(|(index, body)| moved_drawing(body, BodyId::from_index(index), builder));
     let forces = scene.forces.iter().enumerate();
-    moved.chain(forces.filter_map(|force| without_direction(force, scene, builder))).collect()
+    moved
+        .chain(forces.filter_map(|(index, force)| without_direction((index, &force.data), scene, builder)))
+        .collect()
 }
 
 /// Hint on a force between two points that start at the same place, where it has no direction.

@@ -114,8 +114,8 @@ impl Vary {
 }
 
 fn check_growing(times: &[f64]) -> Result<(), VaryError> {
-    let pair = times.array_windows().find(|[earlier, later]| earlier >= later);
-    pair.map_or(Ok(()), |&[earlier, later]| Err(VaryError::NotGrowing { earlier, later }))
+    let pair = times.windows(2).find(|pair| pair[0] >= pair[1]);
+    pair.map_or(Ok(()), |pair| Err(VaryError::NotGrowing { earlier: pair[0], later: pair[1] }))
 }
 
 /// A law whose forces are taken times a factor of the time. It has no potential, whatever the law has.

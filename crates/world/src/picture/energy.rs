@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 const PLOT_HEIGHT: f64 = 320.0;
 /// Largest number of points of a curve; more are thinned out.
-const MOST_POINTS: usize = 4000;
+pub(super) const MOST_POINTS: usize = 4000;
 
 /// Distance of all values of an energy from 0, as a multiple of what changes in the run, from which on it is left out:
 /// with it, an axis from 0 would have more room for what is constant than for what changes.
@@ -98,7 +98,7 @@ impl LeftOut {
 }
 
 /// Returns the least and the largest of the finite values.
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values
         .filter(|value| value.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))

@@ -2,7 +2,7 @@
 //!
 //! `svg` writes elements, `outline` turns the edges of a shape into path data (arcs stay arcs), `shown` chooses
 //! the part of the world to show and `view` maps it to the page; `scene` (with forces as `arrows`, connectors as
-//! `ties` and names as `labels`), `energy` and `events` are one picture each, the latter two on common `axes` with
+//! `ties` and names as `labels`), `energy`, `events` and `probes` are one picture each, the last three on common `axes` with
 //! round `ticks`.
 
 mod arrows;
@@ -11,6 +11,7 @@ mod energy;
 mod events;
 mod labels;
 mod outline;
+mod probes;
 mod scene;
 mod shown;
 mod svg;
@@ -20,6 +21,7 @@ mod view;
 
 pub use energy::energy_picture;
 pub use events::events_picture;
+pub use probes::probes_picture;
 pub use scene::{ScenePictures, scene_picture};
 
 /// Colours of the bodies, in turn.

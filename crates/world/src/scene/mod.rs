@@ -12,9 +12,11 @@ mod expected;
 mod field_path;
 mod force;
 mod locate;
+mod named;
 mod nearest;
 mod one_key;
 mod pair;
+mod probe;
 mod run_data;
 mod shape;
 mod source;
@@ -36,7 +38,9 @@ pub use force::{
     ConstantData, DampingData, ForceData, GravityData, MutualGravityData, PushData, RotatingData, SineData,
     SpringData, TableData, TorsionSpringData, VaryData,
 };
+pub use named::NamedData;
 pub use pair::PairData;
+pub use probe::{AngleData, ConnectorRef, DistanceData, ProbeData};
 pub use run_data::{RunData, StrategyData};
 pub use shape::{
     ArcData, BlockData, DiscData, EdgeData, OutlineData, PathData, PolygonData, RingData, RoundedBlockData,
@@ -66,13 +70,16 @@ pub struct Scene {
     pub bodies: Vec<BodyData>,
     /// The connectors, which tie bodies together.
     #[serde(default, rename = "connector")]
-    pub connectors: Vec<ConnectorData>,
+    pub connectors: Vec<NamedData<ConnectorData>>,
     /// The force laws, which act on bodies.
     #[serde(default, rename = "force")]
-    pub forces: Vec<ForceData>,
+    pub forces: Vec<NamedData<ForceData>>,
     /// Pairs of bodies that differ from what their bodies say.
     #[serde(default, rename = "pair")]
     pub pairs: Vec<PairData>,
+    /// What is told of the run besides the states.
+    #[serde(default, rename = "probe")]
+    pub probes: Vec<NamedData<ProbeData>>,
     /// States that a run is expected to reach.
     #[serde(default)]
     pub expected: Vec<ExpectedData>,
@@ -122,6 +129,17 @@ impl Scene {
     /// ```
     pub fn parse(text: &str, format: SceneFormat) -> Result<Self, SceneError> {
         SceneSource::new(text, format).parse()
+    }
+
+    /// The place of a connector, by its index or its name; `None` if there is none.
+    #[must_use]
+    pub fn find_connector(&self, connector: &ConnectorRef) -> Option<usize> {
+        match connector {
+            ConnectorRef::Index(index) => Some(*index).filter(|index| *index < self.connectors.len()),
+            ConnectorRef::Name(name) => {
+                self.connectors.iter().position(|connector| connector.name.as_ref() == Some(name))
+            }
+        }
     }
 
     /// Checks every value but the expected states.

@@ -4,8 +4,8 @@
 
 use glam::DVec2;
 use halfgap::force::{
-    ConstantForce, Dashpot, ForceFrame, ForceLaw, MutualGravity, Push, RotatingForce, Snapshot, Spring,
-    Turning, Wrenches,
+    ConstantForce, Dashpot, ForceFrame, ForceLaw, MutualGravity, PointForce, PointPush, Push, RotatingForce,
+    Snapshot, Spring, TorsionDamper, TorsionSpring, Turning, Varied, Vary, Wrenches,
 };
 use halfgap::geometry::Shape;
 use halfgap::{
@@ -50,6 +50,12 @@ fn menagerie() -> (World, [BodyId; 4]) {
     builder.add_force(Arc::new(RotatingForce::new("rotor", anchor(bob, 0.0, 0.1), turning)));
     builder.add_force(Arc::new(MutualGravity::new("pull", 0.1, &[(falling, 1.0), (bob, 1.0)], &[])));
     builder.add_force(push(high, 0.01));
+    builder.add_force(Arc::new(TorsionSpring::new("wound", [BodyId::WORLD, bob], 0.3, 0.2)));
+    builder.add_force(Arc::new(TorsionDamper::new("eddies", [falling, bob], 0.01)));
+    let nudge = PointPush { point: DVec2::new(0.0, 0.1), force: DVec2::X, ..PointPush::default() };
+    let vary = Vary::table(vec![0.2, 0.7, 1.1], vec![0.0, 0.1, -0.1]).expect("a fine table");
+    let nudge = PointForce::new("nudge", falling, nudge);
+    builder.add_force(Arc::new(Varied::new(Arc::new(nudge), vary)));
     (builder.build().expect("it can be built"), [low, high, falling, bob])
 }
 
@@ -122,7 +128,7 @@ fn a_law_keeps_its_id_and_its_work() {
         world.remove_force(id, &mut |_| ()).expect("it is there");
         world.advance_to(1.0, &mut |_| ()).expect("it falls");
     }
-    assert_eq!((told(&twin), twin.forces().count()), (told(&world), 5));
+    assert_eq!((told(&twin), twin.forces().count()), (told(&world), 8));
     let mut again = loaded(&twin);
     assert_eq!(again.remove_force(id, &mut |_| ()), Ok(()), "it was removed before");
     assert_eq!(told(&again), told(&world));

@@ -6,13 +6,14 @@ mod connectors;
 mod expected;
 mod forces;
 mod pairs;
+mod probes;
 mod run;
 mod shape;
 
 use super::body::WORLD;
 use super::error::SceneError;
 use super::nearest::did_you_mean;
-use super::{PointData, RunData, Scene};
+use super::{NamedData, PointData, RunData, Scene};
 use check::{At, optional};
 use std::collections::BTreeSet;
 
@@ -38,7 +39,19 @@ pub(super) fn validate_world(scene: &Scene) -> Result<(), SceneError> {
         let (before, pair) = (&scene.pairs[..index], &scene.pairs[index]);
         pairs::validate(pair, (before, &scene.bodies), &names, &at.element(index))
     };
-    (0..scene.pairs.len()).try_for_each(check)
+    (0..scene.pairs.len()).try_for_each(check)?;
+    validate_names(&scene.connectors, &top.field("connector"))?;
+    validate_names(&scene.forces, &top.field("force"))?;
+    let at = top.field("probe");
+    (0..scene.probes.len()).try_for_each(|index| probes::validate((scene, index), &names, &at.element(index)))
+}
+
+/// Checks the names that some elements may have.
+fn validate_names<T>(named: &[NamedData<T>], at: &At<'_>) -> Result<(), SceneError> {
+    named.iter().enumerate().try_for_each(|(index, one)| {
+        let name = one.name.as_deref();
+        name.map_or(Ok(()), |name| probes::require_new(name, &named[..index], &at.element(index)))
+    })
 }
 
 /// Checks the table `[run]`.
