@@ -65,11 +65,11 @@ fn find_within(
     };
     let of_forces = std::mem::replace(&mut settling.solution.force, impulses);
     find_changes(view, region, settling);
-    if gain_of(view, region, &settling.pushed) > 0.0 {
+    if gain_of(view, region, settling) > 0.0 {
         // Modes differ over the moment and its half, and what remains of both is no impulse of contacts; that of the half is.
         settling.solution.force.clone_from(&of_forces);
         find_changes(view, region, settling);
-        if gain_of(view, region, &settling.pushed) > 0.0 {
+        if gain_of(view, region, settling) > 0.0 {
             return Found::Nothing;
         }
     }
@@ -98,11 +98,14 @@ fn find_changes(view: &View<'_>, region: &Region, settling: &mut Settling) {
     settling.pushed = changes;
 }
 
-/// Energy [J] that the region's bodies get by changes of their velocities, beyond rounding.
-fn gain_of(view: &View<'_>, region: &Region, changes: &[[f64; 3]]) -> f64 {
+/// Energy [J] that the region's bodies get by the impulses of the last solution and the changes of their velocities that these cause, beyond
+/// rounding, and without the work of surfaces that run.
+fn gain_of(view: &View<'_>, region: &Region, settling: &Settling) -> f64 {
     let (mut gain, mut terms) = (0.0, 0.0);
-    for (&body, &[x, y, spin]) in region.bodies().iter().zip(changes) {
+    let mut velocities = Vec::with_capacity(region.bodies().len());
+    for (&body, &[x, y, spin]) in region.bodies().iter().zip(&settling.pushed) {
         let before = view.assembly.trajectory(body).unwound_at(view.assembly.now());
+        velocities.push([before.velocity.x, before.velocity.y, before.angular_velocity]);
         let after = BodyState {
             velocity: before.velocity + DVec2::new(x, y),
             angular_velocity: before.angular_velocity + spin,
@@ -110,6 +113,12 @@ fn gain_of(view: &View<'_>, region: &Region, changes: &[[f64; 3]]) -> f64 {
         };
         let [before, after] = [before, after].map(|state| view.assembly.kinetic_energy(body, &state));
         (gain, terms) = (gain + after - before, terms + after + before);
+    }
+    for slip in &settling.slips {
+        // What the bodies have beyond the slip is the speed of the surfaces.
+        let running = change_of(region, slip, &velocities) - slip.row.rate;
+        let impulse = slip.number.and_then(|number| settling.solution.force.get(number));
+        gain -= impulse.map_or(0.0, |impulse| impulse * running);
     }
     gain - ROUNDED * terms
 }
