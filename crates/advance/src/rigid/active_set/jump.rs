@@ -69,7 +69,9 @@ fn find_within(
         // Modes differ over the moment and its half, and what remains of both is no impulse of contacts; that of the half is.
         settling.solution.force.clone_from(&of_forces);
         find_changes(view, region, settling);
-        if gain_of(view, region, settling) > 0.0 {
+        // Loads act in the moment, too.
+        if gain_of(view, region, settling) > gain_by_loads(view, region, stage, 0.5 * moment_of(view, share))
+        {
             return Found::Nothing;
         }
     }
@@ -121,6 +123,27 @@ fn gain_of(view: &View<'_>, region: &Region, settling: &Settling) -> f64 {
         gain -= impulse.map_or(0.0, |impulse| impulse * running);
     }
     gain - ROUNDED * terms
+}
+
+/// Energy [J] that loads give the region's bodies, or take from them, in a time [s].
+fn gain_by_loads(view: &View<'_>, region: &Region, stage: &Stage, moment: f64) -> f64 {
+    let gains = region.bodies().iter().zip(stage.accelerations()).map(|(&body, &[x, y, spin])| {
+        let before = view.assembly.trajectory(body).unwound_at(view.assembly.now());
+        let after = BodyState {
+            velocity: before.velocity + moment * DVec2::new(x, y),
+            angular_velocity: before.angular_velocity + moment * spin,
+            ..before
+        };
+        let [before, after] = [before, after].map(|state| view.assembly.kinetic_energy(body, &state));
+        (after - before).abs()
+    });
+    gains.sum()
+}
+
+/// A moment [s], given as a share of the time scale of the scene.
+fn moment_of(view: &View<'_>, share: f64) -> f64 {
+    let steps = &view.assembly.settings().steps;
+    share * steps.length / steps.speed
 }
 
 /// Notes the records that have no force in the last solution, in which there were forces, and open at more than a speed `least` [m/s].
@@ -177,8 +200,7 @@ fn find_impulses(
     // Rates that are rounding count as much as what forces do in so short a moment.
     let sound = |rate: f64| if rate.abs() > assembly.slip_rest() { rate } else { 0.0 };
     let rates: Vec<f64> = normal.chain(slips.iter().map(|slip| slip.row.rate)).map(sound).collect();
-    let steps = &assembly.settings().steps;
-    let moment = share * steps.length / steps.speed;
+    let moment = moment_of(view, share);
     let mut find = |moment: f64| {
         let found = Jump::find(problem, &rates, moment, solver, solution);
         found.ok().map(|_| solution.force.clone())
