@@ -96,15 +96,13 @@ pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize)
     Some(beyond_switch(dynamics, (law, index), sign, offset))
 }
 
-/// Ticks of the clock after a kink at which a segment that goes over it ends: sums of clock times and offsets are rounded once more.
-const TICKS_BEYOND_KINK: f64 = 2.0;
-
 /// Offset [s] just after the first kink of a law within so many seconds of the start of the segment.
 pub(crate) fn find_kink(dynamics: &Dynamics<'_>, law: usize, reach: f64) -> Option<f64> {
     let start = dynamics.start.seconds();
     let kink = dynamics.physics.force_laws[law].next_kink(start)?;
     let offset = kink - start;
-    (offset <= reach).then(|| offset + TICKS_BEYOND_KINK * dynamics.clock_ticks(1.0))
+    // The clock resolves a tick; sums of clock times and offsets are rounded once more.
+    (offset <= reach).then(|| offset + dynamics.clock_ticks(2.0))
 }
 
 /// Offset [s] of the first change of sign of a switching function just after the end of the segment: so soon that the
