@@ -54,6 +54,7 @@ mod near;
 mod overlap;
 #[cfg(feature = "scene")]
 pub mod picture;
+#[cfg(feature = "scene")]
 mod probe;
 mod query;
 #[cfg(feature = "scene")]
@@ -96,6 +97,7 @@ pub use intervention::Intervention;
 pub use ledger::{LawWork, Ledger};
 #[cfg(feature = "scene")]
 pub use names::{short_names, short_text};
+#[cfg(feature = "scene")]
 pub use probe::{Probe, ProbeKind, ProbeTable, Quantity};
 pub use query::WorldHit;
 #[cfg(feature = "scene")]

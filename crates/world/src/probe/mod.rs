@@ -2,7 +2,6 @@
 //!
 //! A probe reads what was recorded, and changes nothing. `table` has the values of all probes at all output times.
 
-#[cfg(feature = "scene")]
 mod of_scene;
 mod table;
 
