@@ -10,7 +10,7 @@ use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
 use crate::rigid::shares::ROUNDED;
 use glam::DVec2;
-use halfgap_collision::{BodyState, Collision};
+use halfgap_collision::{BodyId, BodyState, Collision};
 use halfgap_contact::Jump;
 
 /// Moments over which impulses are sought, as shares of the time scale of the scene [-]. In the first, forces give a velocity that
@@ -105,15 +105,10 @@ fn find_changes(view: &View<'_>, region: &Region, settling: &mut Settling) {
 fn gain_of(view: &View<'_>, region: &Region, settling: &Settling) -> f64 {
     let (mut gain, mut terms) = (0.0, 0.0);
     let mut velocities = Vec::with_capacity(region.bodies().len());
-    for (&body, &[x, y, spin]) in region.bodies().iter().zip(&settling.pushed) {
-        let before = view.assembly.trajectory(body).unwound_at(view.assembly.now());
-        velocities.push([before.velocity.x, before.velocity.y, before.angular_velocity]);
-        let after = BodyState {
-            velocity: before.velocity + DVec2::new(x, y),
-            angular_velocity: before.angular_velocity + spin,
-            ..before
-        };
-        let [before, after] = [before, after].map(|state| view.assembly.kinetic_energy(body, &state));
+    for (&body, &change) in region.bodies().iter().zip(&settling.pushed) {
+        let state = view.assembly.trajectory(body).unwound_at(view.assembly.now());
+        velocities.push([state.velocity.x, state.velocity.y, state.angular_velocity]);
+        let [before, after] = energies(view, body, change);
         (gain, terms) = (gain + after - before, terms + after + before);
     }
     for slip in &settling.slips {
@@ -125,16 +120,21 @@ fn gain_of(view: &View<'_>, region: &Region, settling: &Settling) -> f64 {
     gain - ROUNDED * terms
 }
 
+/// Kinetic energies [J] of a body before and after a change (x, y, angle) of its velocity.
+fn energies(view: &View<'_>, body: BodyId, [x, y, spin]: [f64; 3]) -> [f64; 2] {
+    let before = view.assembly.trajectory(body).unwound_at(view.assembly.now());
+    let after = BodyState {
+        velocity: before.velocity + DVec2::new(x, y),
+        angular_velocity: before.angular_velocity + spin,
+        ..before
+    };
+    [before, after].map(|state| view.assembly.kinetic_energy(body, &state))
+}
+
 /// Energy [J] that loads give the region's bodies, or take from them, in a time [s].
 fn gain_by_loads(view: &View<'_>, region: &Region, stage: &Stage, moment: f64) -> f64 {
-    let gains = region.bodies().iter().zip(stage.accelerations()).map(|(&body, &[x, y, spin])| {
-        let before = view.assembly.trajectory(body).unwound_at(view.assembly.now());
-        let after = BodyState {
-            velocity: before.velocity + moment * DVec2::new(x, y),
-            angular_velocity: before.angular_velocity + moment * spin,
-            ..before
-        };
-        let [before, after] = [before, after].map(|state| view.assembly.kinetic_energy(body, &state));
+    let gains = region.bodies().iter().zip(stage.accelerations()).map(|(&body, acceleration)| {
+        let [before, after] = energies(view, body, acceleration.map(|rate| moment * rate));
         (after - before).abs()
     });
     gains.sum()
