@@ -108,6 +108,7 @@ fn push_ledger(text: &mut String, ledger: &Ledger, scale: f64) {
         ("friction in impacts", ledger.impact_friction),
         ("friction", ledger.friction),
         ("running surfaces", ledger.surfaces),
+        ("drives", ledger.drives),
     ];
     let force_laws = ledger.force_laws.iter().map(|law| (law.law.as_str(), law.work));
     text.push_str("\nenergy ledger\n");

@@ -39,7 +39,7 @@
 //! acceleration term, `tangent` those of the slip along it, `rolling` those of the relative rotation. `detect` finds the
 //! records of two bodies at one moment and `merge` drops doubles. `first_contact` finds the time at which two moving bodies first close to their target gap: by `closed` forms (roots of a `quadratic`)
 //! where motions are polynomial, by the `march` along second-order bounds otherwise. `connector` ties bodies by rows
-//! that are gaps too. `broad` finds the bodies whose boxes overlap.
+//! that are gaps too; `motion_law` tells what drives a coordinate, or moves a body. `broad` finds the bodies whose boxes overlap.
 
 #![forbid(unsafe_code)]
 
@@ -56,10 +56,12 @@ mod kinematics;
 mod march;
 mod merge;
 mod motion;
+mod motion_law;
 mod near;
 mod quadratic;
 mod record;
 mod rolling;
+mod spline_seconds;
 mod tangent;
 mod tolerances;
 mod zone;
@@ -67,8 +69,9 @@ mod zone;
 pub use body::{Body, BodyId};
 pub use broad::BroadPhase;
 pub use connector::{
-    Alignment, Anchor, Connector, ConnectorError, ConnectorId, ConnectorKind, ConnectorSample, RailError,
-    RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, SplineJoint, rope_contact,
+    Alignment, Anchor, Connector, ConnectorError, ConnectorId, ConnectorKind, ConnectorSample, Coordinate,
+    RailError, RailHint, RailKnot, RailPath, RailPlace, Rope, RopeSearch, SlotFrame, SplineJoint,
+    Surroundings, Turn, rope_contact,
 };
 pub use detect::{
     Moment, contact_levers, detect_features_of_pair, detect_pair, pair_tolerances, record_features,
@@ -84,6 +87,9 @@ pub use halfgap_geometry as geometry;
 pub use kinematics::{Arms, BodyAcceleration, GapKinematics};
 pub use merge::{is_same_collision, merge_collisions};
 pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
+pub use motion_law::{
+    MotionLaw, MotionMoment, MotionSpread, MotionTable, Oscillation, PrescribedMotion, TableError,
+};
 pub use near::{Nearness, visit_near_features};
 pub use quadratic::first_closing_time;
 pub use record::{Collision, ContactGeometry, ContactMotion, Detector, Participant, Parties, Response, Site};

@@ -35,6 +35,8 @@ pub struct Ledger {
     pub friction: f64,
     /// Work of surfaces that run [J].
     pub surfaces: f64,
+    /// Work of drives, of motors and of bodies that are moved [J].
+    pub drives: f64,
     /// Work of each force law that has no potential, in the order of the laws.
     pub force_laws: Vec<LawWork>,
 }
@@ -56,7 +58,7 @@ impl Ledger {
         let force_laws: f64 = self.force_laws.iter().map(|law| law.work).sum();
         let by_events = self.impacts + self.captures + self.projections + self.steps;
         let by_friction = self.jams + self.impact_friction + self.friction + self.surfaces;
-        by_events + by_friction + self.interventions + self.damping + force_laws
+        by_events + by_friction + self.drives + self.interventions + self.damping + force_laws
     }
 
     /// Returns the error of the integration [J]: the change of the energy since the start less the booked changes.
@@ -144,6 +146,7 @@ mod tests {
             impact_friction: 0.0,
             friction: 0.0,
             surfaces: 0.0,
+            drives: 0.0,
             damping: -1.0,
             force_laws: vec![LawWork { law: "motor".to_owned(), work: 0.5 }],
         };

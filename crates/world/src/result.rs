@@ -243,6 +243,7 @@ impl Serialize for Ledger {
             ("impact_friction", self.impact_friction),
             ("friction", self.friction),
             ("surfaces", self.surfaces),
+            ("drives", self.drives),
         ];
         let count = rare.iter().filter(|(_, change)| *change != 0.0).count();
         let mut ledger = serializer.serialize_struct("Ledger", 9 + count)?;

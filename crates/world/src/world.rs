@@ -260,11 +260,12 @@ impl World {
                 + booked.impact_friction
                 + booked.friction
                 + booked.surfaces
+                + booked.drives
                 + works(|work| work),
             captures: booked.captures,
             projections: booked.projections,
             given: booked.interventions,
-            works: works(f64::abs) + booked.surfaces.abs(),
+            works: works(f64::abs) + booked.surfaces.abs() + booked.drives.abs(),
         }
     }
 
@@ -289,6 +290,7 @@ impl World {
             impact_friction: books.impact_friction,
             friction: books.friction,
             surfaces: books.surfaces,
+            drives: books.drives,
             force_laws: force_laws
                 .map(|(_, (law, &work))| LawWork { law: law.name().to_owned(), work })
                 .collect(),

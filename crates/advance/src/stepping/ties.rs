@@ -8,8 +8,8 @@ use halfgap_collision::{Connector, ConnectorKind, ConnectorSample, RailHint};
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Tie {
-    /// Forces [N] of the last step in both directions.
-    pub(super) forces: [f64; 2],
+    /// Forces [N] of the last step in all directions.
+    pub(super) forces: [f64; 3],
     /// It carried a force in the last step.
     pub(super) presses: bool,
     /// Callers know that it carries a force.

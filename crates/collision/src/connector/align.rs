@@ -19,7 +19,7 @@ impl Connector {
     /// if neither can be moved. `can_move` is true for the bodies a and b that may be moved.
     #[must_use]
     pub fn align(&self, a: &Pose, b: &Pose, can_move: [bool; 2]) -> Option<Alignment> {
-        let moves_b = can_move[1] && self.anchors().1.is_some();
+        let moves_b = can_move[1] && self.anchors()[1].is_some();
         if !(moves_b || can_move[0]) {
             return None;
         }
@@ -31,10 +31,18 @@ impl Connector {
     fn shift_of_a(&self, a: &Moving, b: &Moving) -> DVec2 {
         let row = self.measure(0, a, b);
         match &self.kind {
-            ConnectorKind::Pin { .. } => row.point_b - row.point_a,
+            ConnectorKind::Pin { .. } | ConnectorKind::Weld { .. } => row.point_b - row.point_a,
             // Both points stay on a line along the normal, so the translation is the gap.
-            ConnectorKind::Slot { .. } | ConnectorKind::Rod { .. } => row.normal * -row.gap,
-            ConnectorKind::Rope { .. } => row.normal * (-row.gap).max(0.0),
+            ConnectorKind::Slot { .. } | ConnectorKind::Rod { .. } | ConnectorKind::Slider { .. } => {
+                row.normal * -row.gap
+            }
+            ConnectorKind::Rope { .. } | ConnectorKind::Pulley { .. } => row.normal * (-row.gap).max(0.0),
+            // What keeps angles, or acts along a coordinate, begins where the bodies are.
+            ConnectorKind::Gear { .. }
+            | ConnectorKind::Rack { .. }
+            | ConnectorKind::Limit { .. }
+            | ConnectorKind::Drive { .. }
+            | ConnectorKind::Pull { .. } => DVec2::ZERO,
             ConnectorKind::Rail { .. } => row.point_b - row.point_a,
             ConnectorKind::RailStop { path, at, .. } => {
                 if row.gap < 0.0 {

@@ -19,6 +19,20 @@ pub enum ConnectorError {
     /// The normal of a slot is zero or not finite or, in [`Connector::check`](super::Connector::check), no unit vector.
     #[error("the normal of a slot must be a direction, finite and not 0, got ({0}, {1})")]
     BadNormal(f64, f64),
+    /// The axis of a slider or rack is zero or not finite or, in [`Connector::check`](super::Connector::check), no unit vector.
+    #[error("the axis must be a direction, finite and not 0, got ({0}, {1})")]
+    BadAxis(f64, f64),
+    /// The ratio of a gear or pulley is out of range.
+    #[error("the ratio of a gear must be finite and not 0, that of a pulley positive, got {0}")]
+    BadRatio(f64),
+    /// The radius of a rack's wheel is out of range.
+    #[error("the radius of a rack's wheel must be finite and not 0, got {0} m")]
+    BadRadius(f64),
+    /// The largest force of a motor or of dry friction is out of range.
+    #[error(
+        "the largest force or torque must be finite and not negative, got {0}: what holds whatever it takes is a drive"
+    )]
+    BadPull(f64),
     /// The elasticity is not between 0 and 1.
     #[error("elasticity must lie between 0 and 1, got {0}")]
     BadElasticity(f64),

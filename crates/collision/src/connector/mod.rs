@@ -1,19 +1,25 @@
 //! Connectors, which tie two bodies, or a body and the world, together.
 //!
-//! Every connector is one or two rows, each a gap whose target is 0 (see `row`). Pin, slot, rod and rail are bilateral;
-//! a rope and a rail stop only keep their gap from closing. Body a is the primary one, body b the normal one; the force
-//! on a acts along the row's normal.
+//! Every connector is one to three rows, each a gap whose target is 0 (see `row`). Ropes, pulleys, limits and rail stops only
+//! keep their gap from closing; a motor or brake bounds its force; all others are bilateral. Body a is the primary one, body b
+//! the normal one; the force on a acts along the row's normal.
 //!
+//! `kind` lists the kinds, `check` refuses numbers out of range, and `measure` has the rows of each.
+//! `coordinate` has the free coordinate of a joint, which limits, drives and motors act on, and rows of angles alone.
 //! `rail` has the rows of rails, on paths made of lines and arcs (`edge_path`, of pieces as in `edge_piece`) or on a
 //! `spline` of `cubic` pieces (with `spline_nearest` and `spline_length`); `box_tree` finds the piece nearest to a
 //! point. `align` moves bodies to satisfy a connector before a start, `rope` finds the time at which a rope goes taut.
 
 mod align;
 mod box_tree;
+mod check;
+mod coordinate;
 mod cubic;
 mod edge_path;
 mod edge_piece;
 mod error;
+mod kind;
+mod measure;
 mod path;
 mod rail;
 mod rope;
@@ -23,20 +29,17 @@ mod spline_length;
 mod spline_nearest;
 
 pub use align::Alignment;
+pub use coordinate::Coordinate;
 pub use error::{ConnectorError, RailError};
-use path::SAME_PLACE;
+pub use kind::{ConnectorKind, Turn};
+pub use measure::Surroundings;
 pub use path::{RailHint, RailKnot, RailPath, RailPlace, SplineJoint};
 pub use rope::{Rope, RopeSearch, rope_contact};
 pub use row::ConnectorSample;
 
 use crate::body::BodyId;
-use crate::motion::Moving;
 use glam::DVec2;
-use row::Ends;
 use std::sync::Arc;
-
-/// Largest deviation of the length of a unit vector from 1 [-]: rounding.
-const UNIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Index of a connector in its world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -75,68 +78,6 @@ pub enum SlotFrame {
     World,
 }
 
-/// Kind of a connector, with its points and numbers.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub enum ConnectorKind {
-    /// Keeps two points together.
-    Pin {
-        /// Point of body a.
-        a: Anchor,
-        /// Point of body b.
-        b: Anchor,
-    },
-    /// Keeps two points together along one direction.
-    Slot {
-        /// Point of body a.
-        a: Anchor,
-        /// Point of body b.
-        b: Anchor,
-        /// Direction along which the points stay together, a unit vector in `frame`.
-        normal: DVec2,
-        /// Frame of the direction.
-        frame: SlotFrame,
-    },
-    /// Keeps two points exactly a length apart.
-    Rod {
-        /// Point of body a.
-        a: Anchor,
-        /// Point of body b.
-        b: Anchor,
-        /// Length [m].
-        length: f64,
-    },
-    /// Keeps two points at most a length apart.
-    Rope {
-        /// Point of body a.
-        a: Anchor,
-        /// Point of body b.
-        b: Anchor,
-        /// Length [m].
-        length: f64,
-    },
-    /// Keeps a point on a path that is fixed in the world. An open path goes on straight beyond its ends, unless a stop ends
-    /// it. At a corner of the path the point loses the velocity across the piece that it goes on along, whatever the
-    /// elasticity of the connector, and stays there if that piece leads back.
-    Rail {
-        /// Point of body a.
-        a: Anchor,
-        /// Path in world coordinates.
-        path: Arc<RailPath>,
-    },
-    /// Keeps a point on one side of a place of a rail, at which the rail ends.
-    RailStop {
-        /// Point of body a that is on the rail.
-        a: Anchor,
-        /// Path of the rail.
-        path: Arc<RailPath>,
-        /// Arc length [m] from the path's first point at which the rail ends.
-        at: f64,
-        /// True if the rail ends above `at`, so that the point stays at or below it; false for the other way round.
-        upper: bool,
-    },
-}
-
 /// A connector of two bodies, or of a body and the world.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -149,70 +90,45 @@ pub struct Connector {
 }
 
 impl Connector {
-    /// Builds a connector with checked numbers; the normal of a slot is made a unit vector.
+    /// Builds a connector with checked numbers; directions are made unit vectors.
     ///
     /// # Errors
     /// Ends on the same body, or a number out of its range.
     pub fn new(mut kind: ConnectorKind, elasticity: f64) -> Result<Self, ConnectorError> {
-        if let ConnectorKind::Slot { normal, .. } = &mut kind {
+        if let Some(direction) = kind.direction_mut() {
             // By its larger component first, so that no square overflows or vanishes.
-            let scaled = *normal / normal.abs().max_element();
+            let scaled = *direction / direction.abs().max_element();
             if !scaled.is_finite() || scaled == DVec2::ZERO {
-                return Err(ConnectorError::BadNormal(normal.x, normal.y));
+                let (x, y) = (direction.x, direction.y);
+                return Err(kind.bad_direction(x, y));
             }
-            *normal = scaled.normalize();
+            *direction = scaled.normalize();
         }
         let connector = Self { kind, elasticity };
         connector.check().map(|()| connector)
     }
 
-    /// Checks a connector that was not made by [`new`](Self::new), or was changed since.
-    ///
-    /// # Errors
-    /// The errors of [`new`](Self::new); also a normal of a slot that is not a unit vector.
-    pub fn check(&self) -> Result<(), ConnectorError> {
-        if !(0.0..=1.0).contains(&self.elasticity) {
-            return Err(ConnectorError::BadElasticity(self.elasticity));
-        }
-        self.check_numbers()?;
-        let [a, b] = self.bodies();
-        if a == b { Err(ConnectorError::SameBody) } else { Ok(()) }
-    }
-
-    fn check_numbers(&self) -> Result<(), ConnectorError> {
-        let (a, b) = self.anchors();
-        if !(a.point.is_finite() && b.is_none_or(|b| b.point.is_finite())) {
-            return Err(ConnectorError::NotFinite);
-        }
-        match &self.kind {
-            ConnectorKind::Rod { length, .. } | ConnectorKind::Rope { length, .. } => {
-                let fine = *length > 0.0 && length.is_finite();
-                if fine { Ok(()) } else { Err(ConnectorError::BadLength(*length)) }
-            }
-            ConnectorKind::Slot { normal, .. } => {
-                let fine = (normal.length() - 1.0).abs() <= UNIT_ROUNDING;
-                if fine { Ok(()) } else { Err(ConnectorError::BadNormal(normal.x, normal.y)) }
-            }
-            ConnectorKind::RailStop { at, path, .. } => {
-                // The length is a sum that is rounded, and so is the arc length of a stop at the path's end.
-                let length = path.length();
-                let fine = (0.0..=(1.0 + SAME_PLACE) * length).contains(at);
-                if fine { Ok(()) } else { Err(ConnectorError::BadStop { at: *at, length }) }
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The points that the connector ties together: `a`, and `b` if there is one (not for rails and their stops).
+    /// The points that the connector ties together: of body a and of body b, so far as it has such points. Rails and their stops have
+    /// one, gears and racks none, and what acts on an angle has none.
     #[must_use]
     #[inline]
-    pub fn anchors(&self) -> (&Anchor, Option<&Anchor>) {
+    pub fn anchors(&self) -> [Option<&Anchor>; 2] {
         match &self.kind {
             ConnectorKind::Pin { a, b }
             | ConnectorKind::Slot { a, b, .. }
             | ConnectorKind::Rod { a, b, .. }
-            | ConnectorKind::Rope { a, b, .. } => (a, Some(b)),
-            ConnectorKind::Rail { a, .. } | ConnectorKind::RailStop { a, .. } => (a, None),
+            | ConnectorKind::Rope { a, b, .. }
+            | ConnectorKind::Weld { a, b, .. }
+            | ConnectorKind::Slider { a, b, .. }
+            | ConnectorKind::Pulley { a, b, .. } => [Some(a), Some(b)],
+            ConnectorKind::Rail { a, .. } | ConnectorKind::RailStop { a, .. } => [Some(a), None],
+            ConnectorKind::Gear { .. } | ConnectorKind::Rack { .. } => [None, None],
+            ConnectorKind::Limit { coordinate, .. }
+            | ConnectorKind::Drive { coordinate, .. }
+            | ConnectorKind::Pull { coordinate, .. } => match coordinate {
+                Coordinate::Angle { .. } => [None, None],
+                Coordinate::Along { a, b, .. } => [Some(a), Some(b)],
+            },
         }
     }
 
@@ -220,29 +136,123 @@ impl Connector {
     #[must_use]
     #[inline]
     pub fn bodies(&self) -> [BodyId; 2] {
-        let (a, b) = self.anchors();
-        [a.body, b.map_or(BodyId::WORLD, |b| b.body)]
+        match &self.kind {
+            ConnectorKind::Pin { a, b }
+            | ConnectorKind::Slot { a, b, .. }
+            | ConnectorKind::Rod { a, b, .. }
+            | ConnectorKind::Rope { a, b, .. }
+            | ConnectorKind::Weld { a, b, .. }
+            | ConnectorKind::Slider { a, b, .. }
+            | ConnectorKind::Pulley { a, b, .. } => [a.body, b.body],
+            ConnectorKind::Rail { a, .. } | ConnectorKind::RailStop { a, .. } => [a.body, BodyId::WORLD],
+            ConnectorKind::Gear { a, b, .. } => [*a, *b],
+            ConnectorKind::Rack { wheel, bar, .. } => [*wheel, *bar],
+            ConnectorKind::Limit { coordinate, .. }
+            | ConnectorKind::Drive { coordinate, .. }
+            | ConnectorKind::Pull { coordinate, .. } => coordinate.bodies(),
+        }
     }
 
-    /// Number of rows: 2 for a pin, else 1.
+    /// The third body of the connector's row, if it has one, with the coefficient [m] of its angular velocity in the row's rate: the carrier
+    /// of a gear.
+    #[must_use]
+    #[inline]
+    pub fn third(&self) -> Option<(BodyId, f64)> {
+        match &self.kind {
+            ConnectorKind::Gear { carrier, ratio, turn, .. } if !carrier.is_world() => {
+                Some((*carrier, (ratio - 1.0) * turn.lever))
+            }
+            _ => None,
+        }
+    }
+
+    /// Number of rows.
     #[must_use]
     #[inline]
     pub fn row_count(&self) -> usize {
-        if matches!(self.kind, ConnectorKind::Pin { .. }) { 2 } else { 1 }
+        match self.kind {
+            ConnectorKind::Weld { .. } => 3,
+            ConnectorKind::Pin { .. } | ConnectorKind::Slider { .. } => 2,
+            _ => 1,
+        }
     }
 
-    /// True if the gaps of the connector may neither close nor open: for all kinds but ropes and rail stops.
+    /// True if the gaps of the connector may neither close nor open: for all kinds but ropes, pulleys, limits, rail stops and what pulls.
     #[must_use]
     #[inline]
     pub fn is_bilateral(&self) -> bool {
-        !matches!(self.kind, ConnectorKind::Rope { .. } | ConnectorKind::RailStop { .. })
+        !(self.is_unilateral() || self.is_pull())
     }
 
-    /// True for a rail stop, of whichever rail.
+    /// True if the connector only keeps its gap from closing.
+    #[must_use]
+    #[inline]
+    pub fn is_unilateral(&self) -> bool {
+        matches!(
+            self.kind,
+            ConnectorKind::Rope { .. }
+                | ConnectorKind::RailStop { .. }
+                | ConnectorKind::Pulley { .. }
+                | ConnectorKind::Limit { .. }
+        )
+    }
+
+    /// True if the force of the connector is bounded.
+    #[must_use]
+    #[inline]
+    pub fn is_pull(&self) -> bool {
+        matches!(self.kind, ConnectorKind::Pull { .. })
+    }
+
+    /// True if what the connector keeps depends on the time.
+    #[must_use]
+    #[inline]
+    pub fn is_driven(&self) -> bool {
+        matches!(self.kind, ConnectorKind::Drive { .. })
+    }
+
+    /// The part [m/s] of the rate of a connector's row that is prescribed at a time [s]: the rate without any motion of its bodies.
+    #[must_use]
+    #[inline]
+    pub fn prescribed_rate(&self, time: f64) -> f64 {
+        match &self.kind {
+            ConnectorKind::Drive { coordinate, law, .. } => -coordinate.scale() * law.at(time).rate,
+            ConnectorKind::Pull { coordinate, speed, .. } => -coordinate.scale() * speed,
+            _ => 0.0,
+        }
+    }
+
+    /// The first time [s] later than `after` at which what the connector keeps is not smooth.
+    #[must_use]
+    #[inline]
+    pub fn next_kink(&self, after: f64) -> Option<f64> {
+        match &self.kind {
+            ConnectorKind::Drive { law, .. } => law.next_kink(after),
+            _ => None,
+        }
+    }
+
+    /// True if rows of the connector count whole turns of its bodies.
+    #[must_use]
+    #[inline]
+    pub fn counts_turns(&self) -> bool {
+        match &self.kind {
+            ConnectorKind::Weld { .. }
+            | ConnectorKind::Slider { .. }
+            | ConnectorKind::Gear { .. }
+            | ConnectorKind::Rack { .. } => true,
+            ConnectorKind::Limit { coordinate, .. }
+            | ConnectorKind::Drive { coordinate, .. }
+            | ConnectorKind::Pull { coordinate, .. } => matches!(coordinate, Coordinate::Angle { .. }),
+            _ => false,
+        }
+    }
+
+    /// True for what is met along a motion that others lead: a rail stop, of whichever rail, a pulley, or a limit.
     #[must_use]
     #[inline]
     pub fn is_stop(&self) -> bool {
-        matches!(self.kind, ConnectorKind::RailStop { .. })
+        self.is_unilateral() && !matches!(self.kind, ConnectorKind::Rope { .. })
     }
 
     /// True for a stop of the given rail: of the same point, and on the same path.
@@ -267,60 +277,33 @@ impl Connector {
         }
     }
 
-    /// Measures a row (pin: 0 along x, 1 along y; else 0) for given bodies a and b; the background is
-    /// [`Moving::BACKGROUND`].
+    /// The points of the world [m] over which a pulley goes; `None` for other connectors.
     #[must_use]
     #[inline]
-    pub fn measure(&self, row: usize, a: &Moving, b: &Moving) -> ConnectorSample {
-        self.measure_near(row, a, b, None)
-    }
-
-    /// Measures both rows of a pin at once, which share most of their terms; `None` for other connectors.
-    #[must_use]
-    #[inline(always)]
-    pub fn measure_pin(&self, a: &Moving, b: &Moving) -> Option<[ConnectorSample; 2]> {
-        let ConnectorKind::Pin { a: on_a, b: on_b } = &self.kind else { return None };
-        let points = [a.pose.point_to_world(on_a.point), b.pose.point_to_world(on_b.point)];
-        let ends = Ends::of(points, [a, b]);
-        let off = points[0] - points[1];
-        Some([ends.along(off.x, DVec2::X, 0.0), ends.along(off.y, DVec2::Y, 0.0)])
-    }
-
-    /// Measures a row as [`Connector::measure`] does, where rails and their stops search the nearest point near `hint`,
-    /// or on its piece if the hint stays there.
-    ///
-    /// A rail that crosses or nears itself needs the hint, and the search is quicker with it.
-    #[must_use]
-    #[inline]
-    pub fn measure_near(
-        &self,
-        row: usize,
-        a: &Moving,
-        b: &Moving,
-        hint: Option<&RailHint>,
-    ) -> ConnectorSample {
+    pub fn wheels(&self) -> Option<[DVec2; 2]> {
         match &self.kind {
-            ConnectorKind::Pin { a: on_a, b: on_b } => {
-                let normal = if row == 0 { DVec2::X } else { DVec2::Y };
-                let points = [a.pose.point_to_world(on_a.point), b.pose.point_to_world(on_b.point)];
-                Ends::of(points, [a, b]).along(normal.dot(points[0] - points[1]), normal, 0.0)
-            }
-            ConnectorKind::Slot { a: on_a, b: on_b, normal, frame } => {
-                slot_row([on_a, on_b], [a, b], *normal, *frame)
-            }
-            ConnectorKind::Rod { a: on_a, b: on_b, length } => {
-                let points = [a.pose.point_to_world(on_a.point), b.pose.point_to_world(on_b.point)];
-                Ends::of(points, [a, b]).between(*length, 1.0)
-            }
-            ConnectorKind::Rope { a: on_a, b: on_b, length } => {
-                let points = [a.pose.point_to_world(on_a.point), b.pose.point_to_world(on_b.point)];
-                Ends::of(points, [a, b]).between(*length, -1.0)
-            }
-            ConnectorKind::Rail { a: on_a, path } => rail::rail_row(on_a.point, a, path, hint),
-            ConnectorKind::RailStop { a: on_a, path, at, upper } => {
-                let sign = if *upper { -1.0 } else { 1.0 };
-                rail::stop_row(on_a.point, a, path, hint, (*at, sign))
-            }
+            ConnectorKind::Pulley { wheels, .. } => Some(*wheels),
+            _ => None,
+        }
+    }
+
+    /// The point of a rail or of a rail stop, and its path; `None` for other connectors.
+    #[must_use]
+    #[inline]
+    pub fn on_rail(&self) -> Option<(&Anchor, &Arc<RailPath>)> {
+        match &self.kind {
+            ConnectorKind::Rail { a, path } | ConnectorKind::RailStop { a, path, .. } => Some((a, path)),
+            _ => None,
+        }
+    }
+
+    /// The two points that a pin or weld keeps together, by its first two rows; `None` for other connectors.
+    #[must_use]
+    #[inline]
+    pub fn held_together(&self) -> Option<(&Anchor, &Anchor)> {
+        match &self.kind {
+            ConnectorKind::Pin { a, b } | ConnectorKind::Weld { a, b, .. } => Some((a, b)),
+            _ => None,
         }
     }
 
@@ -334,6 +317,7 @@ impl Connector {
                 SlotFrame::B => b.body.is_world(),
                 SlotFrame::World => true,
             },
+            ConnectorKind::Weld { .. } | ConnectorKind::Gear { .. } | ConnectorKind::Rack { .. } => true,
             _ => false,
         }
     }
@@ -344,9 +328,18 @@ impl Connector {
         match &self.kind {
             ConnectorKind::Slot { frame: SlotFrame::A, .. } => [None, POINT],
             ConnectorKind::Slot { frame: SlotFrame::B, .. } => [POINT, None],
-            ConnectorKind::Pin { .. } | ConnectorKind::Slot { .. } | ConnectorKind::RailStop { .. } => {
-                [POINT, POINT]
-            }
+            ConnectorKind::Pin { .. }
+            | ConnectorKind::Slot { .. }
+            | ConnectorKind::RailStop { .. }
+            | ConnectorKind::Weld { .. }
+            | ConnectorKind::Pulley { .. } => [POINT, POINT],
+            // What turns or slides as a whole has no curvature.
+            ConnectorKind::Slider { .. }
+            | ConnectorKind::Gear { .. }
+            | ConnectorKind::Rack { .. }
+            | ConnectorKind::Limit { .. }
+            | ConnectorKind::Drive { .. }
+            | ConnectorKind::Pull { .. } => [None, None],
             ConnectorKind::Rod { length, .. } => [POINT, Some(*length)],
             ConnectorKind::Rope { length, .. } => [POINT, Some(-length)],
             ConnectorKind::Rail { path, .. } => {
@@ -356,47 +349,4 @@ impl Connector {
             }
         }
     }
-
-    /// Violation of the connector [m], not negative: the size of a bilateral connector's gap (of a pin, the distance of
-    /// its points); for the others, the distance beyond their limit.
-    ///
-    /// `hint` is the place at which a rail or a stop last found its point, as in [`Connector::measure_near`]. With a
-    /// hint, a rail's point may be on any continuation of the path; without one, as at a start, only where the nearest
-    /// place is an end.
-    #[must_use]
-    pub fn error(&self, a: &Moving, b: &Moving, hint: Option<&RailHint>) -> f64 {
-        if let (ConnectorKind::Rail { a: on_a, path }, Some(_)) = (&self.kind, hint) {
-            return path.distance(a.pose.point_to_world(on_a.point));
-        }
-        let off = |row| {
-            let gap = self.measure_near(row, a, b, hint).gap;
-            if self.is_bilateral() { gap.abs() } else { (-gap).max(0.0) }
-        };
-        (0..self.row_count()).map(off).fold(0.0, libm::hypot)
-    }
-}
-
-/// The row of a slot. On the body that carries the direction, the force acts at the foot of the other body's point; a
-/// direction of the world is carried by an end on the background, if there is one.
-#[inline]
-fn slot_row(anchors: [&Anchor; 2], [a, b]: [&Moving; 2], normal: DVec2, frame: SlotFrame) -> ConnectorSample {
-    let [on_a, on_b] = [a.pose.point_to_world(anchors[0].point), b.pose.point_to_world(anchors[1].point)];
-    let carrier = match frame {
-        SlotFrame::A => a,
-        SlotFrame::B => b,
-        SlotFrame::World => &Moving::BACKGROUND,
-    };
-    let normal = carrier.pose.vector_to_world(normal);
-    let gap = normal.dot(on_a - on_b);
-    let carries = |side: usize, own: SlotFrame| {
-        frame == own || (frame == SlotFrame::World && anchors[side].body.is_world())
-    };
-    let points = if carries(0, SlotFrame::A) {
-        [on_b + normal * gap, on_b]
-    } else if carries(1, SlotFrame::B) {
-        [on_a, on_a - normal * gap]
-    } else {
-        [on_a, on_b]
-    };
-    Ends::of(points, [a, b]).along(gap, normal, carrier.angular_velocity)
 }

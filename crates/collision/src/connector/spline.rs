@@ -1,16 +1,12 @@
 //! The cubic spline through points, with their distances as parameter.
 //!
-//! With h the distances, D the divided differences and M the second derivatives at the points, continuity of the first
-//! derivative asks h[i-1] M[i-1] + 2 (h[i-1] + h[i]) M[i] + h[i] M[i+1] = 6 (D[i] - D[i-1]); natural ends have M = 0, a
-//! closed spline has one such equation for every point. The system is diagonally dominant: elimination without pivots.
-//!
-//! Source: C. de Boor, "A Practical Guide to Splines", 1978, chapter IV; for the corner entries of the closed system
-//! W. Press et al., "Numerical Recipes", 2.7 (Sherman-Morrison).
+//! `spline_seconds` has its second derivatives at the points.
 
 use super::box_tree::BoxTree;
 use super::cubic::{Cubic, Jet};
 use super::error::RailError;
 use super::path::SplineJoint;
+use crate::spline_seconds::{closed_seconds, natural_seconds};
 use glam::DVec2;
 use halfgap_geometry::Aabb;
 
@@ -194,51 +190,4 @@ fn build_pieces(points: &[DVec2], closed: bool) -> Vec<Cubic> {
             }
         })
         .collect()
-}
-
-/// Second derivatives at the points of an open spline, 0 at its ends.
-fn natural_seconds(widths: &[f64], slopes: &[DVec2]) -> Vec<DVec2> {
-    let inner = widths.len() - 1;
-    let diagonal: Vec<f64> = (0..inner).map(|i| 2.0 * (widths[i] + widths[i + 1])).collect();
-    let mut seconds: Vec<DVec2> = (0..inner).map(|i| (slopes[i + 1] - slopes[i]) * 6.0).collect();
-    if inner > 0 {
-        solve_tridiagonal(&diagonal, &widths[1..inner], &mut seconds);
-    }
-    seconds.insert(0, DVec2::ZERO);
-    seconds.push(DVec2::ZERO);
-    seconds
-}
-
-/// Second derivatives at the points of a closed spline.
-fn closed_seconds(widths: &[f64], slopes: &[DVec2]) -> Vec<DVec2> {
-    let count = widths.len();
-    let before = |i: usize| (i + count - 1) % count;
-    let mut diagonal: Vec<f64> = (0..count).map(|i| 2.0 * (widths[before(i)] + widths[i])).collect();
-    let mut seconds: Vec<DVec2> = (0..count).map(|i| (slopes[i] - slopes[before(i)]) * 6.0).collect();
-    // The two corner entries belong to a matrix of rank one, corner (1, 0, .., 0, 1)(1, 0, .., 0, 1)^T, whose diagonal
-    // entries are subtracted first.
-    let corner = widths[count - 1];
-    diagonal[0] -= corner;
-    diagonal[count - 1] -= corner;
-    let mut unit = vec![DVec2::ZERO; count];
-    (unit[0], unit[count - 1]) = (DVec2::splat(corner), DVec2::splat(corner));
-    solve_tridiagonal(&diagonal, &widths[..count - 1], &mut seconds);
-    solve_tridiagonal(&diagonal, &widths[..count - 1], &mut unit);
-    let share = (seconds[0] + seconds[count - 1]) / (1.0 + unit[0].x + unit[count - 1].x);
-    seconds.iter().zip(&unit).map(|(&second, &unit)| second - unit * share).collect()
-}
-
-/// Solves a symmetric tridiagonal system with the entries `beside` the diagonal, in place of its right side.
-fn solve_tridiagonal(diagonal: &[f64], beside: &[f64], right: &mut [DVec2]) {
-    let mut pivots = diagonal.to_vec();
-    for i in 1..diagonal.len() {
-        let factor = beside[i - 1] / pivots[i - 1];
-        pivots[i] -= factor * beside[i - 1];
-        let above = right[i - 1];
-        right[i] -= above * factor;
-    }
-    for i in (0..diagonal.len()).rev() {
-        let below = if i + 1 < diagonal.len() { right[i + 1] * beside[i] } else { DVec2::ZERO };
-        right[i] = (right[i] - below) / pivots[i];
-    }
 }

@@ -64,7 +64,8 @@ impl Case {
     fn anchor_distances(&self) -> [f64; 2] {
         let sample = self.sample(0.0);
         let apart = (self.paths[0].position - self.paths[1].position).length();
-        let (a, b) = self.connector.anchors();
+        let [a, b] = self.connector.anchors();
+        let a = a.expect("it has a point");
         let arm_b = b.map_or(sample.point_b.length(), |b| b.point.length());
         [a.point.length() + apart + arm_b, a.point.length() + apart + arm_b]
     }
@@ -78,7 +79,10 @@ impl Case {
 
     fn has_smooth_curve(&self) -> bool {
         let [a, b] = [-4.0 * STEP, 4.0 * STEP].map(|t| {
-            let on_a = self.paths[0].at(t).pose.point_to_world(self.connector.anchors().0.point);
+            let on_a = self.paths[0]
+                .at(t)
+                .pose
+                .point_to_world(self.connector.anchors()[0].expect("it has a point").point);
             let places = self.connector.path().map(|path| path.nearest(on_a, None));
             (on_a, places)
         });

@@ -260,16 +260,16 @@ fn check_flight(body: &BodySpec, law: &FreeMotion) -> Result<(), WorldError> {
 
 /// Size of the largest coordinate of a connector [m], on a body or in the world.
 fn farthest(connector: &Connector) -> f64 {
-    let (a, b) = connector.anchors();
-    let anchors = [Some(a), b].into_iter().flatten().map(|anchor| anchor.point.abs().max_element());
-    anchors.fold(world_bounds(connector).map_or(0.0, |bounds| farthest_in(&bounds)), f64::max)
+    let anchors = connector.anchors().into_iter().flatten();
+    let sizes = anchors.map(|anchor| anchor.point.abs().max_element());
+    sizes.fold(world_bounds(connector).map_or(0.0, |bounds| farthest_in(&bounds)), f64::max)
 }
 
 /// Bounds of a connector's points and path that are fixed in the world; `None` if it has none.
 pub(super) fn world_bounds(connector: &Connector) -> Option<Aabb> {
-    let (a, b) = connector.anchors();
-    let anchors = [Some(a), b].into_iter().flatten().filter(|anchor| anchor.body.is_world());
-    let points = anchors.map(|anchor| Aabb { min: anchor.point, max: anchor.point });
+    let anchors = connector.anchors().into_iter().flatten().filter(|anchor| anchor.body.is_world());
+    let wheels = connector.wheels().into_iter().flatten();
+    let points = anchors.map(|anchor| anchor.point).chain(wheels).map(Aabb::around);
     let path = connector.path().map(|path| path.bounds());
     points.chain(path).reduce(Aabb::union)
 }

@@ -6,7 +6,7 @@ use super::view::View;
 use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
-use halfgap_collision::{Anchor, BodyId, ConnectorKind, RailPath, SlotFrame};
+use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, SlotFrame};
 use halfgap_geometry::Aabb;
 use std::fmt::Write;
 
@@ -35,10 +35,7 @@ pub(super) fn rail_boxes(world: &World) -> impl Iterator<Item = Aabb> + '_ {
 
 /// Returns the points that connectors and springs tie.
 pub(super) fn tied_points(world: &World) -> impl Iterator<Item = Anchor> + '_ {
-    let of_connectors = world.connectors().iter().flat_map(|connector| {
-        let (a, b) = connector.anchors();
-        [Some(a), b]
-    });
+    let of_connectors = world.connectors().iter().flat_map(Connector::anchors);
     of_connectors.flatten().copied().chain(elastic_ties(world).flatten())
 }
 
@@ -88,8 +85,7 @@ fn polyline(points: impl Iterator<Item = (f64, f64)>) -> String {
 pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, frame: &Frame, view: &View) {
     let place_of = |anchor: &Anchor| view.to_page(place_of(world, recording, Some(frame), anchor));
     for connector in world.connectors() {
-        let (a, b) = connector.anchors();
-        let [a, b] = [Some(a), b].map(|end| end.map(place_of));
+        let [a, b] = connector.anchors().map(|end| end.map(place_of));
         match (&connector.kind, a, b) {
             (ConnectorKind::Rod { .. }, Some(a), Some(b)) => svg.line(a, b, &LINE[1..]),
             (ConnectorKind::Rope { .. }, Some(a), Some(b)) => {

@@ -77,8 +77,10 @@ impl Probe {
             }
             ProbeKind::Connector(id) => {
                 let connector = &world.connectors()[id.index()];
-                let (a, _) = connector.anchors();
-                let (point, _) = place(a, &moving(a.body));
+                let point = match connector.anchors() {
+                    [Some(a), _] => place(a, &moving(a.body)).0,
+                    [None, _] => DVec2::ZERO,
+                };
                 let (mut force, mut torque) = (DVec2::ZERO, 0.0);
                 for row in frame.forces.iter().filter(|row| row.connector == Some(*id)) {
                     force += row.force * row.normal;

@@ -120,6 +120,12 @@ impl Trajectory {
         angle + (self.turns * TAU + self.turns * TAU_REST)
     }
 
+    /// Number of whole turns that were taken out of the angles of the present motion.
+    #[inline]
+    pub(crate) fn turns(&self) -> f64 {
+        self.turns
+    }
+
     /// State at a time of the present segment, with an angle that lacks the whole turns made before: motions start from
     /// it.
     pub(crate) fn unwound_at(&self, time: Time) -> BodyState {

@@ -26,6 +26,8 @@ pub struct Ledger {
     pub friction: f64,
     /// Work of surfaces that run on what they touch.
     pub surfaces: f64,
+    /// Work of drives, of motors, and of bodies that are moved.
+    pub drives: f64,
     /// Work of each force law that has no potential, in the order of [`RigidSystem::laws`]; 0 for the others.
     pub force_laws: Vec<f64>,
 }
@@ -50,6 +52,7 @@ impl Ledger {
             Work::Damping => self.damping += value,
             Work::Friction(_) => self.friction += value,
             Work::Surfaces => self.surfaces += value,
+            Work::Drives => self.drives += value,
         }
     }
 }

@@ -72,10 +72,12 @@ impl Connectors {
         beside.iter().any(|&rail| stop.is_stop_of(self.connector(rail)))
     }
 
-    /// Position [m] of the point of a rail or a stop at a time, in world coordinates.
+    /// Position [m] of the first point of a connector at a time, in world coordinates: that of a rail or a stop.
     pub(crate) fn point_on_rail(&self, assembly: &Assembly, id: ConnectorId, time: Time) -> DVec2 {
-        let (anchor, _) = self.connector(id).anchors();
-        assembly.moving_at(anchor.body, time).pose.point_to_world(anchor.point)
+        let [anchor, _] = self.connector(id).anchors();
+        anchor.map_or(DVec2::ZERO, |anchor| {
+            assembly.moving_at(anchor.body, time).pose.point_to_world(anchor.point)
+        })
     }
 
     /// Moves the hint of a rail, whose point comes to a joint of the path, on to the next piece. True if the joint is a
@@ -100,8 +102,8 @@ impl Connectors {
     /// the stop; `None` for other connectors and stops.
     fn followed(&self, assembly: &Assembly, id: ConnectorId, time: Time) -> Option<f64> {
         let connector = self.connector(id);
-        let path = connector.path().filter(|path| connector.is_stop() && path.is_closed())?;
-        let (anchor, _) = connector.anchors();
+        let (anchor, path) =
+            connector.on_rail().filter(|(_, path)| connector.is_stop() && path.is_closed())?;
         let (start, mut hint) = self.states[id.index()].follow?;
         let span = time.since(start);
         for look in 1..=ROUNDS {

@@ -6,7 +6,7 @@ use crate::rigid::bodies::instant::is_same_time;
 use crate::time::Time;
 use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, ConnectorKind, ConnectorSample, GapState, Moving, RailHint,
-    Rope,
+    Rope, Surroundings,
 };
 
 /// All connectors with their states, and lists of them by body.
@@ -115,7 +115,7 @@ impl Connectors {
     ) -> Collision {
         let (connector, state) = (self.connector(id), &self.states[id.index()]);
         let hint = self.hint_at(assembly, id, row, time);
-        let sample = connector.measure_near(row, &moving[0], &moving[1], hint.as_ref());
+        let sample = self.sample_at(assembly, (id, row), [&moving[0], &moving[1]], hint.as_ref(), time);
         let row = u32::try_from(row).unwrap_or(u32::MAX);
         let (bodies, tolerances) = ([&moving[0], &moving[1]], assembly.settings().tolerances);
         let mut record =
@@ -138,7 +138,8 @@ impl Connectors {
     ) {
         let moving = self.connector(id).bodies().map(|body| assembly.moving_at(body, time));
         let hint = self.hint_at(assembly, id, row as usize, time);
-        let sample = self.connector(id).measure_near(row as usize, &moving[0], &moving[1], hint.as_ref());
+        let movings = [&moving[0], &moving[1]];
+        let sample = self.sample_at(assembly, (id, row as usize), movings, hint.as_ref(), time);
         record.update_connector(self.connector(id), &sample, [&moving[0], &moving[1]], time.seconds());
         // The point of a rail may have come to a corner, or left one.
         let is_in_corner = self.states[id.index()].corner.is_some();
@@ -153,17 +154,38 @@ impl Connectors {
         row: usize,
         time: Time,
     ) -> ConnectorSample {
+        let [a, b] = self.connector(id).bodies().map(|body| assembly.moving_at(body, time));
+        let hint = self.hint_at(assembly, id, row, time);
+        self.sample_at(assembly, (id, row), [&a, &b], hint.as_ref(), time)
+    }
+
+    /// Measures a row of a connector whose bodies move as given at a time.
+    pub(crate) fn sample_at(
+        &self,
+        assembly: &Assembly,
+        (id, row): (ConnectorId, usize),
+        movings: [&Moving; 2],
+        hint: Option<&RailHint>,
+        time: Time,
+    ) -> ConnectorSample {
         let connector = self.connector(id);
-        let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, time));
-        connector.measure_near(row, &a, &b, self.hint_at(assembly, id, row, time).as_ref())
+        let carrier = connector.third().map(|(body, _)| assembly.moving_at(body, time));
+        let turns = |body: BodyId| assembly.turns_of(body);
+        let [a, b] = connector.bodies();
+        let surroundings = Surroundings {
+            time: time.seconds(),
+            turns: [turns(a), turns(b), connector.third().map_or(0.0, |(body, _)| turns(body))],
+            carrier: carrier.as_ref().unwrap_or(&Moving::BACKGROUND),
+            hint,
+        };
+        connector.measure_in(row, movings, &surroundings)
     }
 
     /// A stop as it is watched along a segment that starts now.
     pub(crate) fn stop(&self, assembly: &Assembly, id: ConnectorId) -> Stop {
         let connector = self.connector(id);
         let hint = self.hint_at(assembly, id, 0, assembly.now());
-        let [a, b] = connector.bodies().map(|body| assembly.moving_at(body, assembly.now()));
-        let sample = connector.measure_near(0, &a, &b, hint.as_ref());
+        let sample = self.measure_connector(assembly, id, 0, assembly.now());
         // A stop of a rail that fires again without time going by lies nearer than the search can tell: it fires again
         // only when its point has sunk further, by more each time.
         let repeats = f64::from(self.states[id.index()].repeats_at(assembly.now()));

@@ -15,9 +15,8 @@ impl Mechanism<'_> {
         let [a, b] = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, _) => {
-                let connector = &self.connectors[id.index()];
-                let path = connector.path()?;
-                rail_room(path, a.pose.point_to_world(connector.anchors().0.point), row.hint.as_ref())
+                let (anchor, path) = self.connectors[id.index()].on_rail()?;
+                rail_room(path, a.pose.point_to_world(anchor.point), row.hint.as_ref())
             }
             RowSource::Anchor(_) => None,
             RowSource::Contact(features) => {

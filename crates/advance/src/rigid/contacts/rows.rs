@@ -9,7 +9,8 @@ use crate::rigid::surfaces::Surfaces;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{
-    BodyId, Collision, Connector, ConnectorId, Detector, GapKinematics, Moving, RailHint, Tolerances,
+    BodyId, Collision, Connector, ConnectorId, ConnectorSample, Detector, GapKinematics, Moving, RailHint,
+    Surroundings, Tolerances,
 };
 use halfgap_contact::CollisionRow;
 use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
@@ -66,6 +67,8 @@ pub(crate) struct Mechanism<'a> {
     pub(crate) surfaces: &'a Surfaces,
     pub(crate) connectors: &'a [Connector],
     pub(crate) tolerances: &'a Tolerances,
+    /// Time [s] of the motions that rows are measured in.
+    pub(crate) time: f64,
 }
 
 /// The motion of a body, or of the background.
@@ -93,19 +96,54 @@ impl Mechanism<'_> {
     /// Gap and kinematics of a row.
     #[inline]
     pub(crate) fn measure(&self, row: &ActiveRow, movings: &[Moving]) -> RowMoment {
-        self.measure_between(row, row.bodies.map(|body| moving_of(movings, body)))
+        let sides = row.bodies.map(|body| moving_of(movings, body));
+        if let RowSource::Connector(id, index) = row.source {
+            let carrier = self.connectors[id.index()].third().map(|(body, _)| moving_of(movings, body));
+            let sample = self.measure_connector((id, index), sides, carrier, row.hint.as_ref());
+            return RowMoment { gap: sample.gap, kinematics: sample.kinematics };
+        }
+        self.measure_between(row, sides)
     }
 
-    /// The same with the two bodies moving like this.
+    /// The same with the two bodies moving like this. Of a third body, on which coefficients do not depend, nothing is known.
     #[inline]
     pub(crate) fn measure_between(&self, row: &ActiveRow, [a, b]: [&Moving; 2]) -> RowMoment {
         match row.source {
             RowSource::Connector(id, index) => {
-                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
+                let sample = self.measure_connector((id, index), [a, b], None, row.hint.as_ref());
                 RowMoment { gap: sample.gap, kinematics: sample.kinematics }
             }
             RowSource::Contact(features) => self.measure_contact(row.bodies, features, [a, b]),
             RowSource::Anchor(features) => self.measure_anchor_row(row, features, [a, b]),
+        }
+    }
+
+    /// A row of a connector, given the motions of its bodies and of the carrier, if it has one.
+    #[inline]
+    pub(crate) fn measure_connector(
+        &self,
+        (id, index): (ConnectorId, usize),
+        movings: [&Moving; 2],
+        carrier: Option<&Moving>,
+        hint: Option<&RailHint>,
+    ) -> ConnectorSample {
+        let connector = &self.connectors[id.index()];
+        let mut surroundings = Surroundings { time: self.time, hint, ..Surroundings::default() };
+        if connector.counts_turns() {
+            let turns = |body: BodyId| self.trajectories.get(body.index()).map_or(0.0, Trajectory::turns);
+            let [a, b] = connector.bodies();
+            let third = connector.third().map_or(0.0, |(body, _)| turns(body));
+            surroundings.turns = [turns(a), turns(b), third];
+            surroundings.carrier = carrier.unwrap_or(surroundings.carrier);
+        }
+        connector.measure_in(index, movings, &surroundings)
+    }
+
+    /// The part [m/s] of a row's rate that is prescribed: the bodies that can move have no share in it.
+    pub(crate) fn prescribed_rate(&self, row: &ActiveRow) -> f64 {
+        match row.source {
+            RowSource::Connector(id, _) => self.connectors[id.index()].prescribed_rate(self.time),
+            RowSource::Contact(_) | RowSource::Anchor(_) => 0.0,
         }
     }
 
@@ -203,7 +241,7 @@ impl Mechanism<'_> {
     pub(crate) fn locate_between(&self, row: &ActiveRow, [a, b]: [&Moving; 2]) -> (DVec2, DVec2) {
         match row.source {
             RowSource::Connector(id, index) => {
-                let sample = self.connectors[id.index()].measure_near(index, a, b, row.hint.as_ref());
+                let sample = self.measure_connector((id, index), [a, b], None, row.hint.as_ref());
                 (sample.point_a, sample.normal)
             }
             RowSource::Contact(features) | RowSource::Anchor(features) => {
@@ -254,6 +292,7 @@ pub(crate) fn mechanism<'a>(assembly: &'a Assembly, connectors: &'a Connectors) 
         surfaces: assembly.surfaces(),
         connectors: connectors.all(),
         tolerances: &assembly.settings().tolerances,
+        time: assembly.now().seconds(),
     }
 }
 
@@ -272,6 +311,19 @@ impl ActiveRow {
     #[inline]
     pub(crate) fn is_joint(&self) -> bool {
         self.bilateral && matches!(self.source, RowSource::Connector(..))
+    }
+
+    /// True for a row of a coordinate that is driven.
+    pub(crate) fn is_driven(&self, connectors: &[Connector]) -> bool {
+        self.driven_by(connectors).is_some_and(Connector::is_driven)
+    }
+
+    /// The connector of a row.
+    fn driven_by<'a>(&self, connectors: &'a [Connector]) -> Option<&'a Connector> {
+        match self.source {
+            RowSource::Connector(id, _) => Some(&connectors[id.index()]),
+            RowSource::Contact(_) | RowSource::Anchor(_) => None,
+        }
     }
 
     /// The features of a contact; `None` for a connector's row and an anchor's.

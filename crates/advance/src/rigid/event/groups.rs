@@ -59,7 +59,7 @@ fn make_group(rooms: &mut Rooms, of: (&Region, &Settling), members: &Members, ro
     );
     list_idle(assembly, connectors, &mut group, of, members.touches(root));
     group.list_stops(assembly, connectors);
-    group.list_laws(assembly);
+    group.list_laws(assembly, connectors);
     group.foresee(assembly, connectors, &rooms.groups);
     let is_unwatched = is_unwatched(assembly, connectors, &rooms.search, &group);
     group.set_unwatched(is_unwatched);

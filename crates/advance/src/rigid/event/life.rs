@@ -12,6 +12,7 @@ use crate::rigid::event::rails::{note_hints, note_ways, renew_hints};
 use crate::rigid::event::rooms::Rooms;
 use crate::rigid::group::attempt::StepFailure;
 use crate::rigid::group::groups::{Groups, part, put_group, with_group};
+use crate::rigid::group::physics::physics;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::remedies::Remedy;
@@ -223,10 +224,8 @@ pub(crate) fn is_unwatched(
     group.bodies().iter().all(|body| search.loners()[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
         && group.rows().iter().all(|row| row.bilateral && !mechanism.can_change(row))
-        && group.force_laws().iter().all(|&law| {
-            let law = &assembly.force_laws().all[law];
-            law.switches() == 0 && law.next_kink(group.start().seconds()).is_none()
-        })
+        && group.force_laws().iter().all(|&law| assembly.force_laws().all[law].switches() == 0)
+        && group.next_kink(&physics(assembly, connectors), group.start().seconds()).is_none()
 }
 
 /// Postpones the dense output of the group with this leader.

@@ -55,9 +55,8 @@ pub(crate) fn note_rails(assembly: &Assembly, connectors: &mut Connectors, regio
 /// place. Rows on splines were followed to it.
 pub(crate) fn renew_hints(assembly: &Assembly, connectors: &mut Connectors, group: &mut Group) {
     let found = |bodies: &[BodyId], state: &[f64], id: ConnectorId, hint: Option<&RailHint>| {
-        let connector = connectors.connector(id);
-        let (anchor, _) = connector.anchors();
-        let (path, place) = (connector.path()?, bodies.binary_search(&anchor.body).ok()?);
+        let (anchor, path) = connectors.connector(id).on_rail()?;
+        let place = bodies.binary_search(&anchor.body).ok()?;
         let point = body_state(state, bodies.len(), place).pose().point_to_world(anchor.point);
         Some(path.hint_near(point, hint))
     };

@@ -221,7 +221,7 @@ impl Dynamics<'_> {
     ) {
         let bodies = self.group.bodies.len();
         self.stage.evaluations += 1;
-        self.stage.load(&self.group.bodies, state);
+        self.load(state, offset);
         let (position_rates, rest) = rates.split_at_mut(3 * bodies);
         let (velocity_rates, powers) = rest.split_at_mut(3 * bodies);
         let time = self.start.seconds() + offset;
@@ -233,8 +233,9 @@ impl Dynamics<'_> {
         }
         if !self.group.rows.is_empty() {
             constrain(self);
-            if matches!(self.group.works.last(), Some(Work::Friction(_) | Work::Surfaces)) {
+            if matches!(self.group.works.last(), Some(Work::Friction(_) | Work::Surfaces | Work::Drives)) {
                 self.note_friction_powers(powers);
+                self.note_driving_power(powers);
             }
         }
         let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;

@@ -90,7 +90,7 @@ impl Dynamics<'_> {
                     let of_spares = spares.iter().map(|row| of_row((row, &row.load[0])));
                     *power = rows.iter().zip(forces).map(of_row).chain(of_spares).sum();
                 }
-                Work::Law(_) | Work::Damping => {}
+                Work::Law(_) | Work::Damping | Work::Drives => {}
             }
         }
     }

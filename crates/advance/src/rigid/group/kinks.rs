@@ -29,8 +29,7 @@ impl Dynamics<'_> {
     /// The longest step [s] for one row, where velocities may err by `allowed` [m/s]; `None` if no joint is ahead.
     fn wait_for_joint(&self, row: &ActiveRow, allowed: f64) -> Option<f64> {
         let (RowSource::Connector(id, _), Some(hint)) = (row.source, &row.hint) else { return None };
-        let connector = &self.physics.mechanism.connectors[id.index()];
-        let (path, anchor) = (connector.path()?, connector.anchors().0);
+        let (anchor, path) = self.physics.mechanism.connectors[id.index()].on_rail()?;
         let place = self.group.bodies.binary_search(&anchor.body).ok()?;
         let count = self.group.bodies.len();
         let body = body_state(&self.group.state, count, place);

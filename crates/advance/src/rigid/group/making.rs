@@ -78,8 +78,8 @@ impl Group {
     }
 
     /// Lists the laws that act on its bodies, and the works that are integrated with it: those of laws without potential
-    /// in their order, then that of damping.
-    pub(crate) fn list_laws(&mut self, assembly: &Assembly) {
+    /// in their order, then that of damping, then that of drives.
+    pub(crate) fn list_laws(&mut self, assembly: &Assembly, connectors: &Connectors) {
         assembly.force_laws().list(&self.bodies, &mut self.force_laws);
         self.works.clear();
         let works = self
@@ -91,6 +91,9 @@ impl Group {
         self.works.extend(works);
         if self.bodies.iter().any(|&body| assembly.trajectory(body).free_motion().is_damped()) {
             self.works.push(Work::Damping);
+        }
+        if self.rows.iter().any(|row| row.is_driven(connectors.all())) {
+            self.works.push(Work::Drives);
         }
     }
 

@@ -15,6 +15,7 @@
 
 pub(super) mod attempt;
 pub(super) mod brief;
+mod drives;
 pub(super) mod dynamics;
 pub(super) mod energy;
 pub(super) mod extending;

@@ -18,13 +18,13 @@ impl Dynamics<'_> {
         let mut on_rows = std::mem::take(&mut self.stage.on_rows);
         on_rows.clear();
         on_rows.extend_from_slice(state);
-        self.move_onto_rows(&mut on_rows);
+        self.move_onto_rows(&mut on_rows, offset);
         self.find_rates(offset, &on_rows, rates, Self::solve_rows);
         self.stage.on_rows = on_rows;
     }
 
-    /// Moves a state onto the active rows, and takes out the velocities that would move it off them.
-    fn move_onto_rows(&mut self, state: &mut Vec<f64>) {
+    /// Moves a state at an offset [s] onto the active rows, and takes out the velocities that would move it off them.
+    fn move_onto_rows(&mut self, state: &mut Vec<f64>, offset: f64) {
         let length = self.physics.steps.length;
         let is_passing = self.passes_by_rows();
         let noise = if is_passing { self.noise(state, length) } else { 0.0 };
@@ -32,7 +32,7 @@ impl Dynamics<'_> {
         let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..ROUNDS {
-            let error = self.measure_errors(state, &mut row_rates);
+            let error = self.measure_errors(state, offset, &mut row_rates);
             if is_passing && error <= noise {
                 break;
             }

@@ -31,7 +31,8 @@ impl<'a> Physics<'a> {
         force_laws: &'a [Arc<dyn ForceLaw>],
         (settings, remedies): (&'a RigidSettings, &'a Remedies),
     ) -> Self {
-        let mechanism = Mechanism { trajectories, surfaces, connectors, tolerances: &settings.tolerances };
+        let tolerances = &settings.tolerances;
+        let mechanism = Mechanism { trajectories, surfaces, connectors, tolerances, time: 0.0 };
         let RigidSettings { extra, ref steps, projection: projects, .. } = *settings;
         Self { mechanism, force_laws, extra, steps, remedies, projects }
     }
@@ -42,7 +43,8 @@ impl<'a> Physics<'a> {
     }
 }
 
-/// The parts of the system from which the motion of groups is computed.
+/// The parts of the system from which the motion of groups is computed. Rows are measured at the time that whoever places
+/// the bodies sets.
 pub(crate) fn physics<'a>(assembly: &'a Assembly, connectors: &'a Connectors) -> Physics<'a> {
     Physics::of(
         (assembly.trajectories(), assembly.surfaces()),

@@ -8,11 +8,22 @@ use glam::DVec2;
 use halfgap_geometry::Pose;
 
 impl Dynamics<'_> {
+    /// Places the group's bodies according to a state at an offset [s] of the segment.
+    pub(crate) fn load(&mut self, state: &[f64], offset: f64) {
+        self.set_clock(offset);
+        self.stage.load(&self.group.bodies, state);
+    }
+
+    /// Sets the offset [s] in the segment at which rows are measured from now on.
+    pub(super) fn set_clock(&mut self, offset: f64) {
+        self.physics.mechanism.time = self.start.seconds() + offset;
+    }
+
     /// Gives all of the group's bodies their poses and velocities at an offset [s] of the segment.
     pub(crate) fn place_at(&mut self, offset: f64) {
         self.find_state_at(offset);
         let trial = std::mem::take(&mut self.stage.trial);
-        self.stage.load(&self.group.bodies, &trial);
+        self.load(&trial, offset);
         self.stage.trial = trial;
     }
 
@@ -42,6 +53,7 @@ impl Dynamics<'_> {
 
     /// Gives the watched bodies their poses at an offset [s] of the segment; their velocities are left as they are.
     pub(crate) fn put_watched_at(&mut self, offset: f64) {
+        self.set_clock(offset);
         for index in 0..self.stage.watched.len() {
             self.put(self.stage.watched[index] as usize, offset);
         }
@@ -49,6 +61,7 @@ impl Dynamics<'_> {
 
     /// Gives the bodies of a row their poses at an offset [s] of the segment.
     pub(crate) fn put_row_at(&mut self, row: usize, offset: f64) {
+        self.set_clock(offset);
         for place in self.group.sides[row].into_iter().flatten() {
             self.put(place as usize, offset);
         }
@@ -56,6 +69,7 @@ impl Dynamics<'_> {
 
     /// Gives the bodies of a contact without force their poses at an offset [s] of the segment.
     pub(crate) fn put_idle_at(&mut self, row: usize, offset: f64) {
+        self.set_clock(offset);
         for body in self.group.idle[row].bodies {
             if let Ok(place) = self.group.bodies.binary_search(&body) {
                 self.put(place, offset);
@@ -65,6 +79,7 @@ impl Dynamics<'_> {
 
     /// Gives all of the group's bodies their poses at an offset [s] of the segment.
     pub(crate) fn put_at(&mut self, offset: f64) {
+        self.set_clock(offset);
         (0..self.group.bodies.len()).for_each(|place| self.put(place, offset));
     }
 

@@ -30,7 +30,7 @@ impl Dynamics<'_> {
             return;
         }
         let end = std::mem::take(&mut self.group.end_state);
-        self.stage.load(&self.group.bodies, &end);
+        self.load(&end, self.group.span);
         self.group.end_state = end;
         let dependent = self.factorize(|_, _| ());
         let Group { rows, active, .. } = &mut *self.group;
@@ -59,7 +59,7 @@ impl Dynamics<'_> {
         let rounds = if is_soft { SOFT_PROJECTIONS } else { ROUNDS };
         let (mut before, mut is_far) = (f64::INFINITY, false);
         for round in 0..rounds {
-            let error = self.measure_errors(&end, &mut rates);
+            let error = self.measure_errors(&end, self.group.span, &mut rates);
             self.respond();
             // A change by x leaves errors of the order of x^2/L. Rows that nearly depend on each other ask for changes
             // beyond this linear range, and for changes that only rounding of their gaps makes: errors far within the
@@ -84,7 +84,7 @@ impl Dynamics<'_> {
             before = error;
         }
         if is_far {
-            self.stage.load(&self.group.bodies, &end);
+            self.load(&end, self.group.span);
             rates.clear();
             self.factorize(|_, rate| rates.push(rate));
         }
@@ -103,10 +103,10 @@ impl Dynamics<'_> {
         (ROUNDINGS * f64::EPSILON * length).max(GAP_ROUNDINGS * self.rounding_in(state))
     }
 
-    /// Measures the rows in a state and factorises. Leaves the error [m] of each gap in the stage's offsets, its rate
+    /// Measures the rows in a state at an offset [s] of the segment and factorises. Leaves the error [m] of each gap in the stage's offsets, its rate
     /// [m/s] in `rates`; returns the largest error [m].
-    pub(crate) fn measure_errors(&mut self, state: &[f64], rates: &mut Vec<f64>) -> f64 {
-        self.stage.load(&self.group.bodies, state);
+    pub(crate) fn measure_errors(&mut self, state: &[f64], offset: f64, rates: &mut Vec<f64>) -> f64 {
+        self.load(state, offset);
         let mut offsets = std::mem::take(&mut self.stage.offsets);
         offsets.clear();
         rates.clear();
@@ -141,7 +141,7 @@ impl Dynamics<'_> {
     /// Changes the velocities at the end such that the rates of bilateral rows vanish and those of the others stay.
     pub(crate) fn fit_joint_velocities(&mut self) {
         let mut end = std::mem::take(&mut self.group.end_state);
-        self.stage.load(&self.group.bodies, &end);
+        self.load(&end, self.group.span);
         let mut offsets = std::mem::take(&mut self.stage.offsets);
         offsets.clear();
         self.factorize(|_, rate| offsets.push(rate));

@@ -2,7 +2,8 @@
 
 use crate::ode::SegmentPolynomial;
 use crate::rigid::connectors::store::Stop;
-use crate::rigid::contacts::rows::ActiveRow;
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
+use crate::rigid::group::physics::Physics;
 use crate::rigid::group::state::{Group, SegmentEnd, Work};
 use crate::rigid::group::stiffness::Stiffness;
 use crate::time::Time;
@@ -176,6 +177,16 @@ impl Group {
     }
 
     /// The stops.
+    /// The first time [s] later than another at which a force law or a drive of the group is not smooth.
+    pub(crate) fn next_kink(&self, physics: &Physics<'_>, after: f64) -> Option<f64> {
+        let of_laws = self.force_laws.iter().filter_map(|&law| physics.force_laws[law].next_kink(after));
+        let of_drives = self.rows.iter().filter_map(|row| match row.source {
+            RowSource::Connector(id, _) => physics.mechanism.connectors[id.index()].next_kink(after),
+            RowSource::Contact(_) | RowSource::Anchor(_) => None,
+        });
+        of_laws.chain(of_drives).reduce(f64::min)
+    }
+
     #[inline]
     pub(crate) fn stops(&self) -> &[Stop] {
         &self.stops

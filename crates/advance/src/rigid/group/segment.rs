@@ -103,9 +103,8 @@ impl Dynamics<'_> {
         let Group { rows, bodies, end_state, .. } = &mut *self.group;
         for row in rows {
             let (RowSource::Connector(id, _), Some(hint)) = (row.source, &row.hint) else { continue };
-            let connector = &mechanism.connectors[id.index()];
-            let Some(path) = connector.path().filter(|path| path.knots().is_empty()) else { continue };
-            let anchor = connector.anchors().0;
+            let on_rail = mechanism.connectors[id.index()].on_rail();
+            let Some((anchor, path)) = on_rail.filter(|(_, path)| path.knots().is_empty()) else { continue };
             let Ok(place) = bodies.binary_search(&anchor.body) else { continue };
             let point = body_state(end_state, bodies.len(), place).pose().point_to_world(anchor.point);
             row.set_hint(Some(path.hint_near(point, Some(hint)).staying()));

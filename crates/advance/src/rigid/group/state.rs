@@ -24,6 +24,8 @@ pub(crate) enum Work {
     Friction(u32),
     /// Of surfaces that run.
     Surfaces,
+    /// Of drives, and of motors that hold their speed.
+    Drives,
 }
 
 /// Event that ends a group's segment.

@@ -149,7 +149,9 @@ impl Dynamics<'_> {
         let gap_error = self.stage.gap_error;
         self.find_rates_at(span, &trial, &mut rates);
         self.stage.gap_error = gap_error;
-        self.stage.load(&self.group.bodies, &self.group.end_state);
+        let end = std::mem::take(&mut self.group.end_state);
+        self.load(&end, span);
+        self.group.end_state = end;
         let velocities = self.group.velocities();
         let Group { bodies, end_rates, roughness, .. } = &mut *self.group;
         roughness.resize(bodies.len(), 0.0);

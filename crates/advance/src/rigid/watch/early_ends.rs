@@ -106,9 +106,9 @@ fn find_geometric_event(dynamics: &mut Dynamics<'_>) -> Option<(f64, SegmentEnd)
         earliest.offer(find_stop(dynamics, stop), SegmentEnd::Stop(stop.id));
         earliest.offer(find_passing(dynamics, stop), SegmentEnd::Switch);
     }
+    earliest.offer(find_kink(dynamics, dynamics.group.span()), SegmentEnd::Switch);
     for place in 0..dynamics.group.force_laws().len() {
         let law = dynamics.group.force_laws()[place];
-        earliest.offer(find_kink(dynamics, law, dynamics.group.span()), SegmentEnd::Switch);
         for index in 0..dynamics.physics.force_laws[law].switches() {
             earliest.offer(find_switch(dynamics, law, index), SegmentEnd::Switch);
         }

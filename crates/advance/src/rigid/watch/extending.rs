@@ -33,13 +33,12 @@ pub(crate) fn extend_watched(dynamics: &mut Dynamics<'_>, tools: &mut Tools<'_>)
     Ok(())
 }
 
-/// Lets the next step end just before the first kink of a law; true if it would have gone over it.
+/// Lets the next step end just before the first kink of a law or drive; true if it would have gone over it.
 fn end_before_kink(dynamics: &mut Dynamics<'_>) -> bool {
     let Some(proposed) = dynamics.group.next_step() else { return false };
     let before = dynamics.clock_ticks(ROUNDINGS);
-    let laws = dynamics.group.force_laws().iter();
-    let kinks = laws.filter_map(|&law| find_kink(dynamics, law, proposed));
-    let Some(kink) = kinks.reduce(f64::min).filter(|kink| *kink > 2.0 * before) else { return false };
+    let kink = find_kink(dynamics, proposed).filter(|kink| *kink > 2.0 * before);
+    let Some(kink) = kink else { return false };
     dynamics.group.set_next_step(Some(kink - before));
     true
 }
@@ -59,7 +58,10 @@ fn end_before_switch(
     tools: &mut Tools<'_>,
     proposed: Option<f64>,
 ) -> Result<(), StepFailure> {
-    if dynamics.group.force_laws().is_empty() || !tools.stepper.method().is_adaptive() {
+    let start = dynamics.start.seconds();
+    let never = dynamics.group.force_laws().is_empty()
+        && dynamics.group.next_kink(&dynamics.physics, start).is_none();
+    if never || !tools.stepper.method().is_adaptive() {
         return Ok(());
     }
     let mut before = dynamics.clock_ticks(ROUNDINGS);

@@ -96,11 +96,10 @@ pub(crate) fn find_switch(dynamics: &mut Dynamics<'_>, law: usize, index: usize)
     Some(beyond_switch(dynamics, (law, index), sign, offset))
 }
 
-/// Offset [s] just after the first kink of a law within so many seconds of the start of the segment.
-pub(crate) fn find_kink(dynamics: &Dynamics<'_>, law: usize, reach: f64) -> Option<f64> {
+/// Offset [s] just after the first kink of a force law or drive within so many seconds of the start of the segment.
+pub(crate) fn find_kink(dynamics: &Dynamics<'_>, reach: f64) -> Option<f64> {
     let start = dynamics.start.seconds();
-    let kink = dynamics.physics.force_laws[law].next_kink(start)?;
-    let offset = kink - start;
+    let offset = dynamics.group.next_kink(&dynamics.physics, start)? - start;
     // The clock resolves a tick; sums of clock times and offsets are rounded once more.
     (offset <= reach).then(|| offset + dynamics.clock_ticks(2.0))
 }
@@ -111,9 +110,9 @@ pub(crate) fn find_switch_at_end(dynamics: &mut Dynamics<'_>) -> Option<f64> {
     let mut earliest = Earliest::default();
     let span = dynamics.group.span();
     let last = TICKS_AFTER_END[TICKS_AFTER_END.len() - 1] * dynamics.clock_ticks(1.0);
+    earliest.offer(find_kink(dynamics, span + last.min(LOOK_AHEAD * span)), SegmentEnd::Switch);
     for place in 0..dynamics.group.force_laws().len() {
         let law = dynamics.group.force_laws()[place];
-        earliest.offer(find_kink(dynamics, law, span + last.min(LOOK_AHEAD * span)), SegmentEnd::Switch);
         for index in 0..dynamics.physics.force_laws[law].switches() {
             earliest.offer(find_change_at_end(dynamics, law, index), SegmentEnd::Switch);
         }

@@ -147,9 +147,7 @@ impl JointTree {
 fn pin_of(rows: &[ActiveRow], mechanism: &Mechanism<'_>) -> Option<Pin> {
     let &[first, second] = rows else { return None };
     let RowSource::Connector(id, 0) = first.source else { return None };
-    let connector = &mechanism.connectors[id.index()];
-    let (a, b) = connector.anchors();
-    let anchors = [*a, *b?];
-    let is_pin = connector.row_count() == 2 && second.source == RowSource::Connector(id, 1);
-    is_pin.then_some(Pin { anchors, gap: DVec2::new(first.gap, second.gap) })
+    let (a, b) = mechanism.connectors[id.index()].held_together()?;
+    let is_second = second.source == RowSource::Connector(id, 1);
+    is_second.then_some(Pin { anchors: [*a, *b], gap: DVec2::new(first.gap, second.gap) })
 }

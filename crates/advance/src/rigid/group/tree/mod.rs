@@ -122,6 +122,11 @@ pub(crate) struct JointTree {
 }
 
 impl JointTree {
+    /// Indices in the group of the rows beside its pins.
+    pub(super) fn rows_beside(&self) -> impl Iterator<Item = usize> + '_ {
+        self.loop_rows.rows.iter().copied()
+    }
+
     pub(crate) fn clear(&mut self) {
         self.links.clear();
         self.numbers.0.clear();

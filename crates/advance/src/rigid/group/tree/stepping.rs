@@ -22,6 +22,7 @@ impl Ode for Hanging<'_, '_> {
     type Error = Infallible;
 
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
+        self.0.set_clock(offset);
         let Dynamics { physics, group, stage, start } = &mut *self.0;
         let Group { tree, bodies, force_laws, works, .. } = &mut **group;
         stage.evaluations += 1;
@@ -32,6 +33,7 @@ impl Ode for Hanging<'_, '_> {
         stage.accelerate(physics, (bodies, force_laws), start.seconds() + offset, works, powers);
         tree.accelerate(&mut stage.accelerations);
         self.0.hold_loop_rows();
+        self.0.note_driving_power(powers);
         let Group { tree, kept, .. } = &mut *self.0.group;
         if !tree.loop_rows.rows.is_empty() {
             kept.note(offset, tree.loop_rows.kept);

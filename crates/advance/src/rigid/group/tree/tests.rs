@@ -159,7 +159,7 @@ impl Scene {
             set_body_state(&mut group.state, count, place, &trajectory.state_at(Time::ZERO));
         }
         let surfaces = &Surfaces::default();
-        let mechanism = Mechanism { trajectories, surfaces, connectors, tolerances: &TOLERANCES };
+        let mechanism = Mechanism { trajectories, surfaces, connectors, tolerances: &TOLERANCES, time: 0.0 };
         let remedies = &Remedies::new(RemedySet::NONE);
         let physics =
             Physics { mechanism, force_laws: &[], extra: None, steps: &FINE.steps, remedies, projects: true };
