@@ -196,9 +196,9 @@ mod tests {
     #[test]
     fn a_connector_that_is_off_ends_the_advance() {
         let mut world = pendulum();
-        let ConnectorKind::Rod { a, b, .. } = world.connectors[0].kind else { panic!("it is a rod") };
+        let ConnectorKind::Rod { a, b, .. } = world.connectors()[0].kind else { panic!("it is a rod") };
         // The monitor measures a longer rod than the one that holds the bob.
-        world.connectors[0] = rod(a, b, 1.0 + 1e-3);
+        world.joints.replace(0, rod(a, b, 1.0 + 1e-3));
         let outcome = world.advance_to(LATER_STILL, &mut |_| ());
         let Err(RunError::Astray { time, finding: Finding::ConnectorOff { error, .. } }) = &outcome else {
             panic!("{outcome:?}")

@@ -79,7 +79,7 @@ mod world_error;
 pub use builder::{BodySpec, WorldBuilder};
 #[cfg(feature = "scene")]
 pub use check::{CheckReport, check};
-pub use connector::ConnectorSpec;
+pub use connector::{ConnectorSpec, JointSpring, Limits, Motor, OnCoordinate};
 #[cfg(feature = "scene")]
 pub use estimate::{Difference, ErrorEstimate, FrictionThreshold, TimedDifference, estimate_error};
 pub use event::{ContactEvent, ContactForce, ContactFriction, Event, Impact, ImpactRow};

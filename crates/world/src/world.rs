@@ -1,5 +1,6 @@
 //! A world: named bodies, the laws that act on them, and the clock.
 
+use crate::builder::Joints;
 use crate::event::{ContactForce, ContactFriction, Event, Impact};
 use crate::force::{ForceLaw, Moving, Snapshot, potential_of};
 use crate::invariant_monitor::InvariantMonitor;
@@ -8,7 +9,7 @@ use crate::strategy::Strategy;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RowForce, RowFriction};
-use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Surroundings, Tolerances};
 use halfgap_geometry::Shape;
 use std::sync::Arc;
 
@@ -92,7 +93,7 @@ pub struct Inertia {
 pub struct World {
     pub(crate) strategy: Strategy,
     pub(crate) bodies: Vec<Named>,
-    pub(crate) connectors: Vec<Connector>,
+    pub(crate) joints: Joints,
     pub(crate) now: Time,
     pub(crate) warnings: Vec<String>,
     pub(crate) start: Start,
@@ -121,7 +122,7 @@ pub(crate) struct Start {
 pub(crate) struct WorldParts {
     pub(crate) strategy: Strategy,
     pub(crate) bodies: Vec<Named>,
-    pub(crate) connectors: Vec<Connector>,
+    pub(crate) joints: Joints,
     pub(crate) now: Time,
     pub(crate) warnings: Vec<String>,
     pub(crate) start: Start,
@@ -130,13 +131,13 @@ pub(crate) struct WorldParts {
 
 impl World {
     pub(crate) fn new(parts: WorldParts) -> Self {
-        let WorldParts { strategy, bodies, connectors, now, warnings, start, monitor } = parts;
+        let WorldParts { strategy, bodies, joints, now, warnings, start, monitor } = parts;
         let told = Event::Impact(Impact::default());
         let changes = strategy.contact_changes();
         let is_odd = !changes.jam.is_empty() || !changes.undecided.is_empty();
         let owes_first_report = strategy.counts().impacts > 0 || is_odd;
         let mut world =
-            Self { strategy, bodies, connectors, now, warnings, start, told, owes_first_report, monitor };
+            Self { strategy, bodies, joints, now, warnings, start, told, owes_first_report, monitor };
         world.monitor.turnover = Turnover::new(world.energy());
         world
     }
@@ -318,23 +319,32 @@ impl World {
     /// The connectors, in the order in which they were added.
     #[must_use]
     pub fn connectors(&self) -> &[Connector] {
-        &self.connectors
+        self.joints.added()
     }
 
-    /// Error of a connector at the present time [m], 0 or more; 0 for a slack rope and for a point that is clear of its
+    /// Error of a connector and of what acts on its free coordinate at the present time [m], 0 or more; 0 for a slack rope and for a point that is clear of its
     /// stop.
     ///
     /// # Panics
     /// If there is no such connector.
     #[must_use]
     pub fn connector_error(&self, connector: ConnectorId) -> f64 {
-        let hint = self.strategy.rail_hint(connector, self.now);
-        let connector = &self.connectors[connector.index()];
         let moving = |body: BodyId| {
             if body.is_world() { Moving::BACKGROUND } else { Moving::from(&self.state(body)) }
         };
-        let [a, b] = connector.bodies().map(moving);
-        connector.error(&a, &b, hint.as_ref())
+        let of_part = |id: ConnectorId| {
+            let (part, hint) = (&self.joints.all()[id.index()], self.strategy.rail_hint(id, self.now));
+            let carrier = part.third().map_or(Moving::BACKGROUND, |(body, _)| moving(body));
+            let surroundings = Surroundings {
+                time: self.time(),
+                carrier: &carrier,
+                hint: hint.as_ref(),
+                ..Surroundings::default()
+            };
+            let [a, b] = part.bodies().map(moving);
+            part.error_in([&a, &b], &surroundings)
+        };
+        self.joints.parts(connector).map(of_part).fold(0.0, f64::max)
     }
 
     /// Thresholds of touching, given or derived from the tolerance.
@@ -385,7 +395,7 @@ impl World {
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         let counts = self.strategy.counts();
-        let ids = (0..).map(ConnectorId).take(self.connectors.len());
+        let ids = (0..).map(ConnectorId).take(self.joints.added().len());
         let errors = counts.largest_connector_error.into_iter().chain(ids.map(|id| self.connector_error(id)));
         Statistics {
             steps: counts.segments,

@@ -9,7 +9,7 @@ use super::row::ConnectorSample;
 use super::{Anchor, SlotFrame};
 use crate::body::BodyId;
 use crate::kinematics::GapKinematics;
-use crate::motion::Moving;
+use crate::motion::{BodyState, Moving};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
@@ -62,6 +62,19 @@ impl Coordinate {
             Self::Angle { lever, .. } => *lever,
             Self::Along { .. } => 1.0,
         }
+    }
+
+    /// Value [rad or m] between two bodies in given states, whose angles count whole turns.
+    #[must_use]
+    pub fn value(&self, states: [&BodyState; 2]) -> f64 {
+        let [a, b] = states.map(Moving::from);
+        self.measure([&a, &b]).gap / self.scale()
+    }
+
+    /// The row whose gap is the coordinate itself, as a length, between two bodies whose angles count whole turns.
+    #[must_use]
+    pub fn measure(&self, movings: [&Moving; 2]) -> ConnectorSample {
+        self.row(1.0, 0.0, movings, [0.0; 2])
     }
 
     /// Measures the row whose gap is `sign` times the coordinate less `at`, as a length.

@@ -33,6 +33,19 @@ pub enum ConnectorError {
         "the largest force or torque must be finite and not negative, got {0}: what holds whatever it takes is a drive"
     )]
     BadPull(f64),
+    /// Something is to act on the free coordinate of a connector that has none.
+    #[error(
+        "only a pin, a slot and a slider have a free coordinate on which a motor, friction, limits, a drive or a spring can act"
+    )]
+    NoCoordinate,
+    /// The lower bound of a coordinate is above the upper one.
+    #[error("the lower limit must not be above the upper one, got {lower} and {upper}")]
+    CrossedLimits {
+        /// Lower bound [rad or m].
+        lower: f64,
+        /// Upper bound [rad or m].
+        upper: f64,
+    },
     /// The elasticity is not between 0 and 1.
     #[error("elasticity must lie between 0 and 1, got {0}")]
     BadElasticity(f64),

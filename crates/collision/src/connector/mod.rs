@@ -38,6 +38,7 @@ pub use rope::{Rope, RopeSearch, rope_contact};
 pub use row::ConnectorSample;
 
 use crate::body::BodyId;
+use crate::motion::BodyState;
 use glam::DVec2;
 use std::sync::Arc;
 
@@ -274,6 +275,50 @@ impl Connector {
         match &self.kind {
             ConnectorKind::Rail { path, .. } | ConnectorKind::RailStop { path, .. } => Some(path),
             _ => None,
+        }
+    }
+
+    /// The free coordinate of a pin, slot or slider, on which limits, drives and motors act; `None` for other connectors. An angle has a
+    /// lever of 1 m.
+    #[must_use]
+    pub fn coordinate(&self) -> Option<Coordinate> {
+        match &self.kind {
+            ConnectorKind::Pin { a, b } => Some(Coordinate::Angle { a: a.body, b: b.body, lever: 1.0 }),
+            ConnectorKind::Slot { a, b, normal, frame } => {
+                Some(Coordinate::Along { a: *a, b: *b, axis: -normal.perp(), frame: *frame })
+            }
+            ConnectorKind::Slider { a, b, axis, frame, .. } => {
+                Some(Coordinate::Along { a: *a, b: *b, axis: *axis, frame: *frame })
+            }
+            _ => None,
+        }
+    }
+
+    /// Lets the connector keep the angles and places that bodies have, and a drive set out from there at a time [s]; `lever` [m]
+    /// makes angles lengths. Other connectors stay as they are.
+    pub fn begin_from(&mut self, [a, b, carrier]: [&BodyState; 3], lever: f64, time: f64) {
+        match &mut self.kind {
+            ConnectorKind::Weld { turn, .. } | ConnectorKind::Slider { turn, .. } => {
+                *turn = Turn { angle: b.angle - a.angle, lever };
+            }
+            ConnectorKind::Gear { ratio, turn, .. } => {
+                let angle = a.angle - *ratio * b.angle + (*ratio - 1.0) * carrier.angle;
+                *turn = Turn { angle, lever };
+            }
+            ConnectorKind::Rack { radius, axis, at, .. } => *at = axis.dot(b.position) - *radius * a.angle,
+            ConnectorKind::Drive { coordinate, law, at } => {
+                *at = coordinate.value([a, b]) - law.at(time).value;
+            }
+            _ => (),
+        }
+        let (ConnectorKind::Limit { coordinate, .. }
+        | ConnectorKind::Drive { coordinate, .. }
+        | ConnectorKind::Pull { coordinate, .. }) = &mut self.kind
+        else {
+            return;
+        };
+        if let Coordinate::Angle { lever: own, .. } = coordinate {
+            *own = lever;
         }
     }
 

@@ -4,11 +4,12 @@ use super::bodies::Bodies;
 use super::edge_spec;
 use super::force::anchor;
 use crate::builder::WorldBuilder;
-use crate::connector::ConnectorSpec;
+use crate::connector::{ConnectorSpec, JointSpring, Limits, Motor, OnCoordinate};
 use crate::scene::{
-    self, ConnectorData, FieldPath, LengthData, NormalFrame, PointData, Scene, SceneError, SlotData,
+    self, AxisFrame, ConnectorData, FieldPath, GearData, JointSpringData, LengthData, LimitsData, MotorData,
+    NormalFrame, PointData, PulleyData, RackData, Scene, SceneError, SliderData, SlotData, WeldData,
 };
-use halfgap_collision::{Connector, ConnectorError, ConnectorKind, RailError, RailPath, SlotFrame};
+use halfgap_collision::{Connector, ConnectorError, ConnectorKind, RailError, RailPath, SlotFrame, Turn};
 use std::sync::Arc;
 
 /// Default elasticity of bilateral connectors.
@@ -26,7 +27,12 @@ pub(super) fn add_all(builder: &mut WorldBuilder, bodies: &Bodies<'_>) -> Result
         let options = data.options();
         let elasticity = options.elasticity.unwrap_or(default_elasticity(bodies, data));
         let connector = Connector::new(kind, elasticity).map_err(|error| refused(&error, &field))?;
-        builder.add_connector(ConnectorSpec { connector, collide: options.collide, align: options.align });
+        builder.add_connector(ConnectorSpec {
+            connector,
+            collide: options.collide,
+            align: options.align,
+            on_coordinate: on_coordinate(data, &field)?,
+        });
     }
     Ok(())
 }
@@ -39,6 +45,7 @@ fn default_elasticity(bodies: &Bodies<'_>, data: &ConnectorData) -> f64 {
     match data {
         ConnectorData::Rope(rope) => of_body(&rope.a).min(of_body(&rope.b)),
         ConnectorData::RailStop(stop) => of_body(&stop.a),
+        ConnectorData::Pulley(pulley) => of_body(&pulley.a).min(of_body(&pulley.b)),
         _ => HOLDING_ELASTICITY,
     }
 }
@@ -80,6 +87,57 @@ fn kind<'a>(
             let path = paths.find(&stop.path, closed, field)?;
             ConnectorKind::RailStop { a: end(&stop.a), path, at: stop.at, upper: stop.upper }
         }
+        ConnectorData::Weld(WeldData { a, b, .. }) => {
+            ConnectorKind::Weld { a: end(a), b: end(b), turn: Turn::default() }
+        }
+        ConnectorData::Slider(SliderData { a, b, axis, axis_frame, .. }) => ConnectorKind::Slider {
+            a: end(a),
+            b: end(b),
+            axis: (*axis).into(),
+            frame: match axis_frame {
+                AxisFrame::A => SlotFrame::A,
+                AxisFrame::World => SlotFrame::World,
+            },
+            turn: Turn::default(),
+        },
+        ConnectorData::Gear(GearData { a, b, ratio, carrier, .. }) => {
+            let [a, b, carrier] = [a, b, carrier].map(|name| bodies.find(name));
+            ConnectorKind::Gear { a, b, carrier, ratio: *ratio, turn: Turn::default() }
+        }
+        ConnectorData::Rack(RackData { wheel, bar, radius, axis, .. }) => {
+            let [wheel, bar] = [wheel, bar].map(|name| bodies.find(name));
+            ConnectorKind::Rack { wheel, bar, radius: *radius, axis: (*axis).into(), at: 0.0 }
+        }
+        ConnectorData::Pulley(PulleyData { a, b, wheel_a, wheel_b, ratio, length, .. }) => {
+            let wheels = [(*wheel_a).into(), (*wheel_b).into()];
+            ConnectorKind::Pulley { a: end(a), b: end(b), wheels, ratio: *ratio, length: *length }
+        }
+    })
+}
+
+/// What acts on the free coordinate of a connector.
+fn on_coordinate(data: &ConnectorData, field: &FieldPath) -> Result<OnCoordinate, SceneError> {
+    let Some(joint) = data.joint() else { return Ok(OnCoordinate::default()) };
+    let law = joint.drive.map(|drive| {
+        drive.to_law().map_err(|(place, error)| {
+            let field = field.field("drive").field("table").field(place);
+            SceneError::new(field, error.to_string())
+        })
+    });
+    Ok(OnCoordinate {
+        motor: joint.motor.map(|MotorData { speed, max }| Motor { speed, max }),
+        friction: joint.friction.1,
+        limits: joint.limits.map(|LimitsData { lower, upper, elasticity }| Limits {
+            lower,
+            upper,
+            elasticity,
+        }),
+        drive: law.transpose()?,
+        spring: joint.spring.map(|JointSpringData { rest, stiffness, damping }| JointSpring {
+            rest,
+            stiffness,
+            damping,
+        }),
     })
 }
 
@@ -132,6 +190,9 @@ fn refused(error: &ConnectorError, field: &FieldPath) -> SceneError {
     let field = match error {
         ConnectorError::BadLength(_) => field.field("length"),
         ConnectorError::BadNormal(..) => field.field("normal"),
+        ConnectorError::BadAxis(..) => field.field("axis"),
+        ConnectorError::BadRatio(_) => field.field("ratio"),
+        ConnectorError::BadRadius(_) => field.field("radius"),
         ConnectorError::BadElasticity(_) => field.field("elasticity"),
         ConnectorError::BadStop { .. } => field.field("at"),
         _ => field.clone(),

@@ -1,9 +1,14 @@
-//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `drift` tells how far bodies
+//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `joints` lists connectors with their parts, `drift` tells how far bodies
 //! go that nothing holds to the world.
 
 mod checks;
 mod drift;
+mod joints;
 mod warnings;
+
+pub(crate) use joints::Joints;
+#[cfg(feature = "save")]
+pub(crate) use joints::Parts;
 
 use crate::connector::ConnectorSpec;
 use crate::force::{ForceId, ForceLaw, Moving, Snapshot, Wrench, Wrenches, wrenches_of};
@@ -21,7 +26,7 @@ use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{BodyPart, FreeMotion, PairRule, RigidParts, Scales, Surface, UniformMotion};
-use halfgap_collision::{Anchor, Body, BodyId, BodyState, Connector, ConnectorId, Tolerances};
+use halfgap_collision::{Anchor, Body, BodyId, BodyState, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -266,6 +271,7 @@ impl WorldBuilder {
         self.check()?;
         self.stop_vanishing();
         self.align();
+        self.add_springs();
         let wrenches = self.wrenches()?;
         let scales = self.scales(&wrenches);
         self.check_resolution(&scales)?;
@@ -283,7 +289,7 @@ impl WorldBuilder {
         ];
         let mut warnings: Vec<String> =
             self.warnings.into_iter().chain(warnings.into_iter().flatten()).collect();
-        let connectors: Vec<Connector> = self.connectors.into_iter().map(|spec| spec.connector).collect();
+        let joints = self.joints()?;
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.free_motions).map(into_part).unzip();
         let mut pool = ShapePool::default();
@@ -295,7 +301,7 @@ impl WorldBuilder {
         };
         let acting = (forces_on(&bodies, &wrenches), torques_on(&bodies, &wrenches));
         let given = total(&bodies);
-        let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &connectors, &rules)?;
+        let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &joints, &rules)?;
         warnings.extend(velocity_warning(apart, &tolerances));
         let energy = total(&bodies);
         let now = Time::from_seconds(self.settings.start_time);
@@ -305,7 +311,7 @@ impl WorldBuilder {
         let settings = rigid_settings(&self.settings, &scales, tolerances);
         let parts = RigidParts {
             bodies,
-            connectors: connectors.clone(),
+            connectors: joints.all().to_vec(),
             force_laws: self.forces,
             excluded: self.excluded,
             pairs: self.pairs,
@@ -319,7 +325,7 @@ impl WorldBuilder {
         .map_err(|error| WorldError::Start {
             source: RunError::new(error, |body| name_among(&named, body).to_owned()),
         })?;
-        Ok(World::new(WorldParts { strategy, bodies: named, connectors, now, warnings, start, monitor }))
+        Ok(World::new(WorldParts { strategy, bodies: named, joints, now, warnings, start, monitor }))
     }
 
     /// Sets to 0 the speeds whose squares would underflow.

@@ -1,7 +1,7 @@
 //! Force laws: forces and torques on bodies beside uniform gravity and damping.
 //!
 //! Each law is a type that implements [`ForceLaw`]: [`MutualGravity`], [`Spring`], [`Dashpot`], [`ConstantForce`], [`PointForce`],
-//! [`RotatingForce`], [`TorsionSpring`], [`TorsionDamper`], or yours. [`Varied`] lets a law vary with the time. The module `anchor` holds points that move with bodies, `sum` adds up several laws.
+//! [`RotatingForce`], [`TorsionSpring`], [`TorsionDamper`], [`CoordinateSpring`], [`CoordinateDamper`], or yours. [`Varied`] lets a law vary with the time. The module `anchor` holds points that move with bodies, `sum` adds up several laws.
 //!
 //! A law has a potential V only if its force is -dV/dx at all times, over all positions and angles x. Mutual gravity
 //! and springs have one; a constant force has none, although its size never changes: whether it turns with its body or
@@ -45,6 +45,7 @@
 
 mod anchor;
 mod constant;
+mod coordinate_spring;
 mod dashpot;
 #[cfg(test)]
 mod law_check;
@@ -57,6 +58,7 @@ mod torsion_spring;
 mod vary;
 
 pub use constant::{ConstantForce, ForceFrame, Push};
+pub use coordinate_spring::{CoordinateDamper, CoordinateSpring};
 pub use dashpot::Dashpot;
 pub use halfgap_advance::rigid::{ForceLaw, Snapshot, Wrench, Wrenches};
 pub use halfgap_collision::{Anchor, Moving};

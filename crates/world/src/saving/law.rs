@@ -2,8 +2,8 @@
 
 use super::error::SaveError;
 use crate::force::{
-    ConstantForce, Dashpot, ForceLaw, MutualGravity, PointForce, RotatingForce, Spring, TorsionDamper,
-    TorsionSpring, Varied, Vary,
+    ConstantForce, CoordinateDamper, CoordinateSpring, Dashpot, ForceLaw, MutualGravity, PointForce,
+    RotatingForce, Spring, TorsionDamper, TorsionSpring, Varied, Vary,
 };
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -13,6 +13,8 @@ use std::sync::Arc;
 #[derive(Serialize, Deserialize)]
 pub(super) enum SavedLaw {
     Constant(ConstantForce),
+    CoordinateDamper(CoordinateDamper),
+    CoordinateSpring(CoordinateSpring),
     Dashpot(Dashpot),
     MutualGravity(MutualGravity),
     PointForce(PointForce),
@@ -35,6 +37,8 @@ impl SavedLaw {
             return Ok(Self::Varied(Box::new(Self::of(&**law)?), vary.clone()));
         }
         None.or_else(|| any.downcast_ref().cloned().map(Self::Constant))
+            .or_else(|| any.downcast_ref().cloned().map(Self::CoordinateDamper))
+            .or_else(|| any.downcast_ref().cloned().map(Self::CoordinateSpring))
             .or_else(|| any.downcast_ref().cloned().map(Self::Dashpot))
             .or_else(|| any.downcast_ref().cloned().map(Self::MutualGravity))
             .or_else(|| any.downcast_ref().cloned().map(Self::PointForce))
@@ -48,6 +52,8 @@ impl SavedLaw {
     pub(super) fn into_law(self) -> Arc<dyn ForceLaw> {
         match self {
             Self::Constant(law) => Arc::new(law),
+            Self::CoordinateDamper(law) => Arc::new(law),
+            Self::CoordinateSpring(law) => Arc::new(law),
             Self::Dashpot(law) => Arc::new(law),
             Self::MutualGravity(law) => Arc::new(law),
             Self::PointForce(law) => Arc::new(law),

@@ -12,6 +12,7 @@ mod law;
 
 pub use error::{LoadError, SaveError};
 
+use crate::builder::{Joints, Parts};
 use crate::event::{Event, Impact};
 use crate::invariant_monitor::InvariantMonitor;
 use crate::strategy::SavedStrategy;
@@ -26,6 +27,7 @@ struct Content<S, B, W, M> {
     force_laws: Vec<SavedLaw>,
     strategy: S,
     bodies: B,
+    parts: Parts,
     now: Time,
     warnings: W,
     start: Start,
@@ -68,6 +70,7 @@ impl World {
             force_laws: force_laws.collect::<Result<_, _>>()?,
             strategy: &self.strategy,
             bodies: &self.bodies,
+            parts: self.joints.saved_parts(),
             now: self.now,
             warnings: &self.warnings,
             start: self.start,
@@ -101,7 +104,7 @@ impl World {
             .with_force_laws(force_laws)
             .map_err(|error| LoadError::Unreadable { reason: error.to_string() })?;
         Ok(Self {
-            connectors: strategy.connectors().to_vec(),
+            joints: Joints::restored(strategy.connectors().to_vec(), content.parts),
             strategy,
             bodies: content.bodies,
             now: content.now,

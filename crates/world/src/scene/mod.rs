@@ -28,8 +28,9 @@ mod vector;
 
 pub use body::{BodyData, MotionData, WORLD};
 pub use connector::{
-    ConnectorData, ConnectorOptions, LengthData, NormalFrame, PinData, PointData, RailData, RailPath,
-    RailStopData, SlotData,
+    AxisFrame, ConnectorData, ConnectorOptions, GearData, JointData, JointSpringData, LengthData, LimitsData,
+    MotorData, NormalFrame, PinData, PointData, PulleyData, RackData, RailData, RailPath, RailStopData,
+    SliderData, SlotData, WeldData,
 };
 pub use error::{Excerpt, Position, SceneError};
 pub use expected::{ExpectedData, ExpectedState};

@@ -2,6 +2,7 @@
 
 use super::joined::{name_of, rows};
 use super::moving;
+use crate::builder::Joints;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
@@ -30,7 +31,7 @@ struct Correction {
 pub(super) fn correct_positions(
     bodies: &mut [BodyPart],
     records: &[Collision],
-    connectors: &[Connector],
+    connectors: &Joints,
 ) -> Option<f64> {
     let corrections: Vec<_> = records.iter().map(lift).chain(join(bodies, connectors)).collect();
     apply(bodies, &corrections)
@@ -42,7 +43,7 @@ pub(super) fn bring_to_target(
     bodies: &mut [BodyPart],
     held: &[Collision],
     others: &[Collision],
-    connectors: &[Connector],
+    connectors: &Joints,
 ) -> Option<f64> {
     let to_target = |record: &Collision| Correction {
         offset: record.distance_to_target(),
@@ -66,7 +67,7 @@ fn apply(bodies: &mut [BodyPart], corrections: &[Correction]) -> Option<f64> {
 }
 
 /// True if a gap can be lifted while the connectors come to fit, with all other contacts left out.
-pub(super) fn can_lift(bodies: &[BodyPart], record: &Collision, connectors: &[Connector]) -> bool {
+pub(super) fn can_lift(bodies: &[BodyPart], record: &Collision, connectors: &Joints) -> bool {
     let corrections: Vec<_> = std::iter::once(lift(record)).chain(join(bodies, connectors)).collect();
     least_changes(bodies, &corrections).is_some()
 }
@@ -82,10 +83,7 @@ fn lift(record: &Collision) -> Correction {
     }
 }
 
-fn join<'a>(
-    bodies: &'a [BodyPart],
-    connectors: &'a [Connector],
-) -> impl Iterator<Item = Correction> + use<'a> {
+fn join<'a>(bodies: &'a [BodyPart], connectors: &'a Joints) -> impl Iterator<Item = Correction> + use<'a> {
     rows(bodies, connectors).map(|(_, connector, sample)| Correction {
         bodies: connector.bodies(),
         jacobian: sample.kinematics.jacobian,
@@ -100,7 +98,7 @@ fn join<'a>(
 pub(super) fn correct_velocities(
     bodies: &mut [BodyPart],
     named: &[Named],
-    connectors: &[Connector],
+    connectors: &Joints,
     tolerances: &Tolerances,
 ) -> Result<Option<(ConnectorName, f64)>, WorldError> {
     let bilateral = rows(bodies, connectors).filter(|(_, connector, _)| connector.is_bilateral());

@@ -1,10 +1,11 @@
 //! Errors of the connectors at the start, and their rows.
 
 use super::moving;
+use crate::builder::Joints;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_advance::rigid::BodyPart;
-use halfgap_collision::{BodyId, Connector, ConnectorSample};
+use halfgap_collision::{BodyId, Connector, ConnectorId, ConnectorSample, Moving, Surroundings};
 
 /// A connector and its error.
 #[derive(Clone, Copy, Debug)]
@@ -15,26 +16,27 @@ pub(super) struct ConnectorOff {
 }
 
 impl ConnectorOff {
-    pub(super) fn name(&self, named: &[Named], connectors: &[Connector]) -> ConnectorName {
+    pub(super) fn name(&self, named: &[Named], connectors: &Joints) -> ConnectorName {
         name_of(self.index, named, connectors)
     }
 }
 
 /// Returns the name of a connector in messages.
-pub(super) fn name_of(index: usize, named: &[Named], connectors: &[Connector]) -> ConnectorName {
+pub(super) fn name_of(index: usize, named: &[Named], connectors: &Joints) -> ConnectorName {
     let name = |body: BodyId| named.get(body.index()).map(|body| body.name.as_str());
-    ConnectorName::new(index, &connectors[index], name)
+    let whole = connectors.whole(ConnectorId(u32::try_from(index).unwrap_or(u32::MAX)));
+    ConnectorName::new(whole.index(), &connectors.all()[index], name)
 }
 
 /// Refuses the first connector whose error is larger than allowed [m].
 pub(super) fn require_small_errors(
     bodies: &[BodyPart],
     named: &[Named],
-    connectors: &[Connector],
+    connectors: &Joints,
     allowed: f64,
 ) -> Result<(), WorldError> {
-    for (index, connector) in connectors.iter().enumerate() {
-        let error = error_of(bodies, connector);
+    for (index, connector) in connectors.all().iter().enumerate() {
+        let error = error_of(bodies, connector, connectors.start());
         if error > allowed || error.is_nan() {
             let connector = name_of(index, named, connectors);
             return Err(WorldError::ConnectorError { connector, error, allowed });
@@ -44,27 +46,44 @@ pub(super) fn require_small_errors(
 }
 
 /// Returns the connector with the largest error.
-pub(super) fn worst_connector(bodies: &[BodyPart], connectors: &[Connector]) -> Option<ConnectorOff> {
-    let off = connectors.iter().enumerate();
-    let off = off.map(|(index, connector)| ConnectorOff { index, error: error_of(bodies, connector) });
+pub(super) fn worst_connector(bodies: &[BodyPart], connectors: &Joints) -> Option<ConnectorOff> {
+    let off = connectors.all().iter().enumerate();
+    let off = off.map(|(index, connector)| ConnectorOff {
+        index,
+        error: error_of(bodies, connector, connectors.start()),
+    });
     off.max_by(|p, q| p.error.total_cmp(&q.error))
 }
 
-fn error_of(bodies: &[BodyPart], connector: &Connector) -> f64 {
-    let [a, b] = connector.bodies().map(|body| moving(bodies, body));
-    connector.error(&a, &b, None)
+fn error_of(bodies: &[BodyPart], connector: &Connector, time: f64) -> f64 {
+    let ([a, b], carrier) = movings_of(bodies, connector);
+    let surroundings = Surroundings { time, carrier: &carrier, ..Surroundings::default() };
+    connector.error_in([&a, &b], &surroundings)
 }
 
-/// Every row of every connector that ties a movable body, with the connector's index.
+/// Motions of the two bodies of a connector, and of its carrier, or the background.
+fn movings_of(bodies: &[BodyPart], connector: &Connector) -> ([Moving; 2], Moving) {
+    let carrier = connector.third().map_or(BodyId::WORLD, |(body, _)| body);
+    (connector.bodies().map(|body| moving(bodies, body)), moving(bodies, carrier))
+}
+
+/// Every row of every connector that ties a movable body, with the connector's index, but of those that only pull.
 pub(super) fn rows<'a>(
     bodies: &'a [BodyPart],
-    connectors: &'a [Connector],
+    connectors: &'a Joints,
 ) -> impl Iterator<Item = (usize, &'a Connector, ConnectorSample)> {
     let is_fixed = |body: BodyId| body.is_world() || bodies[body.index()].body.is_fixed();
-    let movable =
-        connectors.iter().enumerate().filter(move |(_, one)| !one.bodies().into_iter().all(is_fixed));
+    let movable = connectors
+        .all()
+        .iter()
+        .enumerate()
+        .filter(move |(_, one)| !one.is_pull() && !one.bodies().into_iter().all(is_fixed));
     movable.flat_map(|(index, connector)| {
-        let [a, b] = connector.bodies().map(|body| moving(bodies, body));
-        (0..connector.row_count()).map(move |row| (index, connector, connector.measure(row, &a, &b)))
+        let ([a, b], carrier) = movings_of(bodies, connector);
+        (0..connector.row_count()).map(move |row| {
+            let time = connectors.start();
+            let surroundings = Surroundings { time, carrier: &carrier, ..Surroundings::default() };
+            (index, connector, connector.measure_in(row, [&a, &b], &surroundings))
+        })
     })
 }

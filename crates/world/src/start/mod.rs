@@ -17,12 +17,13 @@ mod regain;
 mod tight;
 mod touching;
 
+use crate::builder::Joints;
 use crate::near::NearPairs;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use correction::{correct_positions, correct_velocities};
 use halfgap_advance::rigid::BodyPart;
-use halfgap_collision::{BodyId, BodyState, Collision, Connector, Moving, Tolerances};
+use halfgap_collision::{BodyId, BodyState, Collision, Moving, Tolerances};
 use joined::{ConnectorOff, require_small_errors, worst_connector};
 use regain::regain_touches;
 use tight::TightPairs;
@@ -87,7 +88,7 @@ pub(crate) struct Corrected {
 pub(crate) fn correct_start(
     bodies: &mut [BodyPart],
     named: &[Named],
-    connectors: &[Connector],
+    connectors: &Joints,
     rules: &StartRules<'_>,
 ) -> Result<Corrected, WorldError> {
     let mut near = NearPairs::default();
@@ -184,7 +185,7 @@ impl Rounds {
 fn widen(
     tight: &mut TightPairs,
     bodies: &[BodyPart],
-    connectors: &[Connector],
+    connectors: &Joints,
     (rules, near): (&StartRules<'_>, &mut NearPairs),
 ) -> bool {
     let pairs = rules.near_pairs(near, bodies);
@@ -232,7 +233,7 @@ fn cannot_correct(
     overlap: Option<([BodyId; 2], f64)>,
     off: Option<ConnectorOff>,
     named: &[Named],
-    connectors: &[Connector],
+    connectors: &Joints,
 ) -> WorldError {
     let of_gap = |record: &Collision| (record.bodies(), record.geometry.distance);
     let gap = overlap.map(|(bodies, depth)| (bodies, -depth)).or(too_near.map(of_gap));

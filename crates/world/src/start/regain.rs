@@ -6,16 +6,17 @@ use super::correction::bring_to_target;
 use super::joined::worst_connector;
 use super::touching::{Touch, is_below_zone, record_of, touch, touching};
 use super::{MOST_ROUNDS, StartRules, ways};
+use crate::builder::Joints;
 use crate::near::NearPairs;
 use halfgap_advance::rigid::BodyPart;
-use halfgap_collision::{BodyState, Collision, Connector};
+use halfgap_collision::{BodyState, Collision};
 
 /// Brings the lifted gaps to their target, from both sides, if some of them lie beyond it. Leaves the bodies as they
 /// are if none does, or if that is not possible. `given` holds the bodies before they were lifted.
 pub(super) fn regain_touches(
     bodies: &mut [BodyPart],
     (lifted, given): (&[Touch], &[BodyState]),
-    connectors: &[Connector],
+    connectors: &Joints,
     (rules, near): (&StartRules<'_>, &mut NearPairs),
 ) {
     let sink = rules.tolerances.sink();

@@ -2,8 +2,9 @@
 //! its floor. They keep their given gap, if they do not overlap.
 
 use super::correction::can_lift;
+use crate::builder::Joints;
 use halfgap_advance::rigid::BodyPart;
-use halfgap_collision::{BodyId, Collision, Connector};
+use halfgap_collision::{BodyId, Collision};
 
 /// Pairs that keep their gaps.
 #[derive(Clone, Debug, Default)]
@@ -21,12 +22,7 @@ impl TightPairs {
 
     /// Lets pairs of the given records keep their gaps: at first those that cannot be lifted even alone, else all.
     /// Returns false if no pair was added.
-    pub(super) fn widen(
-        &mut self,
-        bodies: &[BodyPart],
-        connectors: &[Connector],
-        too_near: &[Collision],
-    ) -> bool {
+    pub(super) fn widen(&mut self, bodies: &[BodyPart], connectors: &Joints, too_near: &[Collision]) -> bool {
         let before = self.pairs.len();
         if !self.searched {
             self.searched = true;

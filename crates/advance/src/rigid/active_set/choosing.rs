@@ -90,7 +90,7 @@ fn active_row(
     let bodies = record.bodies();
     let hint = match source {
         RowSource::Connector(id, index) => connectors.states()[id.index()].hint_of(index).copied(),
-        RowSource::Contact(_) | RowSource::Anchor(_) => None,
+        RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_) => None,
     };
     // Bilateral rows are kept at gap 0, the others where they are, unless they have sunk too deep: moving a rope to
     // its length would move a body that hangs on it by a long arm by much more.

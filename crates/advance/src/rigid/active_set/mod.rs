@@ -20,6 +20,7 @@ pub(super) mod leverless;
 pub(super) mod levers;
 pub(super) mod painleve;
 pub(super) mod posing;
+pub(super) mod pulls;
 pub(super) mod redundant;
 pub(super) mod relaxing;
 pub(super) mod settle;

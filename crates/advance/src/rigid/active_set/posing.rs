@@ -1,6 +1,7 @@
 //! The complementarity problem of an event's candidates.
 
 use crate::rigid::active_set::choosing::places_of;
+use crate::rigid::active_set::pulls::list_pulls;
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::active_set::slips::list_slips;
 use crate::rigid::bodies::assembly::Assembly;
@@ -12,7 +13,7 @@ use crate::rigid::region::touching::Region;
 use crate::rigid::shares::ROUNDED;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{BodyAcceleration, Collision};
+use halfgap_collision::{BodyAcceleration, BodyId, Collision};
 
 /// Finds the accelerations of a region's bodies without the forces of rows.
 pub(super) fn accelerate_region(
@@ -28,11 +29,11 @@ pub(super) fn accelerate_region(
     }
     assembly.force_laws().list(region.bodies(), &mut settling.force_laws);
     let physics = physics(assembly, connectors);
-    let of_region = (region.bodies(), settling.force_laws.as_slice());
+    let of_region = (region.bodies(), settling.force_laws.as_slice(), &[][..]);
     stage.accelerate(&physics, of_region, time.seconds(), &[], &mut []);
 }
 
-/// Poses the problem of the candidates: their normal rows, and behind them the slips of those that may stick.
+/// Poses the problem of the candidates: their normal rows, behind them the slips of those that may stick, and then what pulls.
 pub(super) fn pose_problem(
     assembly: &Assembly,
     connectors: &Connectors,
@@ -41,7 +42,8 @@ pub(super) fn pose_problem(
     stage: &Stage,
 ) {
     list_slips(assembly, connectors, region, settling);
-    let Settling { problem, candidates, slips, jumps, slack, .. } = settling;
+    list_pulls(assembly, connectors, region, settling, assembly.now());
+    let Settling { problem, candidates, slips, pulls, jumps, slack, .. } = settling;
     let least = f64::EPSILON * assembly.settings().tolerances.accuracy / (LONGEST_STEP * LONGEST_STEP);
     region.begin(problem, |body| assembly.inertia(body));
     // Accelerations that move nothing in the longest time are rounding, as are those that remain of
@@ -68,11 +70,19 @@ pub(super) fn pose_problem(
     }
     for slip in slips.iter_mut().filter(|slip| slip.side.is_none()) {
         let record = &region.records()[candidates[slip.place]];
-        let [a, b] = accelerations_of_sides(region, record, stage.accelerations());
+        let [a, b] = accelerations_of_sides(region, record.bodies(), stage.accelerations());
         let offset = sound(record, slip.row.acceleration(&a, &b));
         let Some(row) = region.row_along(record, &slip.row.jacobian, offset) else { continue };
         let row = row.friction(slip.place, slip.bound(*jumps, *slack));
         slip.number = Some(problem.add_row(&row).expect("a row of finite numbers beside that of its gap"));
+    }
+    for pull in pulls {
+        let [a, b] = accelerations_of_sides(region, pull.bodies, stage.accelerations());
+        let kinematics = &pull.row.kinematics;
+        let offset = kinematics.acceleration(&a, &b);
+        let row = region.row_between(pull.bodies, &kinematics.jacobian, offset);
+        let [least, most] = pull.bounds();
+        pull.number = row.and_then(|row| problem.add_row(&row.bounded(least, most)).ok());
     }
 }
 
@@ -83,16 +93,16 @@ fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
 
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
 pub(super) fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
-    let [a, b] = accelerations_of_sides(region, record, accelerations);
+    let [a, b] = accelerations_of_sides(region, record.bodies(), accelerations);
     record.motion.kinematics.acceleration(&a, &b)
 }
 
 fn accelerations_of_sides(
     region: &Region,
-    record: &Collision,
+    bodies: [BodyId; 2],
     accelerations: &[[f64; 3]],
 ) -> [BodyAcceleration; 2] {
-    record.bodies().map(|body| {
+    bodies.map(|body| {
         region
             .place(body)
             .map_or(BodyAcceleration::default(), |place| body_acceleration(accelerations[place]))

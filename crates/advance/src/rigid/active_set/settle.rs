@@ -13,6 +13,7 @@ use crate::rigid::active_set::jammed::is_jammed;
 use crate::rigid::active_set::leverless::exclude_leverless;
 use crate::rigid::active_set::painleve::note_undecided;
 use crate::rigid::active_set::posing::{accelerate_region, offset_under, pose_problem};
+use crate::rigid::active_set::pulls::{choose_pulls, give_up_holding, list_pulls};
 use crate::rigid::active_set::relaxing::relax;
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::active_set::slips::give_way;
@@ -60,6 +61,9 @@ pub(crate) fn settle(
     settling.undecided.clear();
     settling.candidates.clear();
     settling.given_way.clone_from(&settling.yielding);
+    settling.given_up.clear();
+    settling.held.clear();
+    settling.pulled.clear();
     let is_start = region.cause() == Cause::Start;
     settling.is_start = is_start;
     let rest = match (is_start, region.is_accumulating()) {
@@ -78,7 +82,8 @@ pub(crate) fn settle(
     candidates.extend(wanted.map(|(index, _)| index));
     let may_hop =
         |settling: &Settling| records().any(|record| could_hop(view.assembly, region, settling, record));
-    if settling.candidates.is_empty() && !(with_hops && may_hop(settling)) {
+    list_pulls(view.assembly, view.connectors, region, settling, time);
+    if settling.candidates.is_empty() && settling.pulls.is_empty() && !(with_hops && may_hop(settling)) {
         return Ok(());
     }
     accelerate_region(view.assembly, view.connectors, region, settling, stage, time);
@@ -88,6 +93,7 @@ pub(crate) fn settle(
         solved = solve_giving_way(view, region, settling, stage, (time, rest))?;
     }
     if solved == Solved::Nothing {
+        choose_pulls(settling);
         return Ok(());
     }
     note_undecided(view.assembly, region, settling);
@@ -99,13 +105,14 @@ pub(crate) fn settle(
         solve_giving_way(view, region, settling, stage, (time, rest))?;
     }
     // Forces of contacts with friction are shared otherwise.
-    let is_smooth = settling.slips.is_empty();
+    let is_smooth = settling.slips.is_empty() && settling.pulls.is_empty();
     if is_smooth && (is_start || settling.has_pulled) && view.assembly.remedies().is_on(Remedy::DependentRows)
     {
         // The last problem may still have had candidates that then became inactive without a force.
         pose_problem(view.assembly, view.connectors, region, settling, stage);
         exclude_dependent(view.assembly, region, settling, stage);
     }
+    choose_pulls(settling);
     choose_rows(view.assembly, view.connectors, view.pairs, region, settling, time);
     view.assembly.refuse_squeezed(
         settling.active.iter().map(|(_, row)| row.bodies),
@@ -125,6 +132,7 @@ fn solve_giving_way(
     loop {
         let solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
         if solved == Solved::Nothing || !give_way(region, settling) {
+            give_up_holding(region, settling);
             return Ok(solved);
         }
     }
@@ -141,7 +149,7 @@ fn solve_candidates(
 ) -> Result<Solved, AdvanceError> {
     pose_problem(assembly, connectors, region, settling, stage);
     let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    if scale == 0.0 && !settling.problem.bilateral().contains(&true) {
+    if scale == 0.0 && settling.pulls.is_empty() && !settling.problem.bilateral().contains(&true) {
         settling.solution.force.clear();
         settling.solution.force.resize(settling.candidates.len(), 0.0);
         return Ok(Solved::Nothing);

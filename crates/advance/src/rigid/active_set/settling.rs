@@ -3,16 +3,18 @@
 
 use crate::rigid::active_set::exclusion::Excluded;
 use crate::rigid::active_set::levers::Levers;
+use crate::rigid::active_set::pulls::Pulling;
 use crate::rigid::active_set::redundant::Redundant;
 use crate::rigid::active_set::slips::{Slip, for_each_push};
 use crate::rigid::books::report::RowForce;
 use crate::rigid::contacts::friction::Axis;
+use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::NEGLIGIBLE;
 use crate::rigid::zeno::memory::StoppedSlip;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, ConnectorId};
 use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
 /// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are active.
@@ -40,6 +42,18 @@ pub(crate) struct Settling {
     /// The friction of the candidates that have some.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) slips: Vec<Slip>,
+    /// Motors and dry friction in joints.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) pulls: Vec<Pulling>,
+    /// Those that cannot hold from this event on, and the side, 1 or -1, to which they give way.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) given_up: Vec<(ConnectorId, f64)>,
+    /// Rows of those that hold.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) held: Vec<ActiveRow>,
+    /// Those that act with all their force.
+    #[cfg_attr(feature = "save", serde(skip))]
+    pub(super) pulled: Vec<Pull>,
     /// The problem is that of a jump: contacts that slip may stop.
     #[cfg_attr(feature = "save", serde(skip))]
     pub(super) jumps: bool,
@@ -124,6 +138,10 @@ impl Default for Settling {
             lenient: solver(lenient),
             candidates: Vec::new(),
             slips: Vec::new(),
+            pulls: Vec::new(),
+            given_up: Vec::new(),
+            held: Vec::new(),
+            pulled: Vec::new(),
             jumps: false,
             slack: 0.0,
             loose: Vec::new(),
@@ -165,7 +183,8 @@ impl Settling {
                 slip.number.map(|_| self.along.get(slip.record).and_then(|along| along[slip.axis as usize]))
             };
             let normal = self.candidates.iter().map(|&index| self.forces[index]);
-            self.guess.guess_forces(normal.chain(self.slips.iter().filter_map(along)));
+            let of_pulls = self.pulls.iter().map(|_| None);
+            self.guess.guess_forces(normal.chain(self.slips.iter().filter_map(along)).chain(of_pulls));
         }
         let solver = if self.is_start { &mut self.sharing } else { &mut self.solver };
         solver.solve_from(&self.problem, &self.guess, &mut self.solution).or_else(|error| match error {
@@ -275,8 +294,7 @@ impl Settling {
         inertia: impl Fn(BodyId) -> InverseInertia,
         sums: &mut [[f64; 3]],
     ) {
-        let mut push = |index: usize, j: &[f64; 6], force: f64| {
-            let sides = region.records()[index].bodies();
+        let mut push = |sides: [BodyId; 2], j: &[f64; 6], force: f64| {
             for (side, body) in sides.into_iter().enumerate() {
                 let Some(place) = region.place(body) else { continue };
                 let InverseInertia { inverse_mass, inverse_moment } = inertia(body);
@@ -286,9 +304,16 @@ impl Settling {
             }
         };
         for (&index, &force) in records.iter().zip(&self.solution.force) {
-            push(index, &region.records()[index].motion.kinematics.jacobian, force);
+            let record = &region.records()[index];
+            push(record.bodies(), &record.motion.kinematics.jacobian, force);
         }
-        for_each_push(self, |place, j, force| push(records[place], j, force));
+        for_each_push(self, |place, j, force| push(region.records()[records[place]].bodies(), j, force));
+        for pull in &self.pulls {
+            let force = pull.number.and_then(|number| self.solution.force.get(number));
+            if let Some(&force) = force {
+                push(pull.bodies, &pull.row.kinematics.jacobian, force);
+            }
+        }
     }
 }
 
@@ -315,6 +340,18 @@ impl Settling {
     /// True if a candidate slips.
     pub(crate) fn any_slips(&self) -> bool {
         self.slips.iter().any(|slip| slip.side.is_some())
+    }
+
+    /// Rows of motors and of dry friction in joints that hold.
+    #[inline]
+    pub(crate) fn held(&self) -> &[ActiveRow] {
+        &self.held
+    }
+
+    /// Motors and dry friction in joints that act with all their force.
+    #[inline]
+    pub(crate) fn pulled(&self) -> &[Pull] {
+        &self.pulled
     }
 
     /// The active rows, with the index of each one's record.

@@ -119,7 +119,7 @@ fn told_rows<'a>(
         let rolling = mechanism.told_rolling(row, force, turning);
         let (point, normal) = mechanism.locate(row, movings);
         let (connector, features) = match row.source {
-            RowSource::Connector(id, _) => (Some(id), None),
+            RowSource::Connector(id, _) | RowSource::Pull(id) => (Some(id), None),
             RowSource::Contact(features) | RowSource::Anchor(features) => (None, Some(features)),
         };
         RowForce {

@@ -50,7 +50,7 @@ impl Ledger {
         match work {
             Work::Law(law) => self.force_laws[law] += value,
             Work::Damping => self.damping += value,
-            Work::Friction(_) => self.friction += value,
+            Work::Friction(_) | Work::Rubbing => self.friction += value,
             Work::Surfaces => self.surfaces += value,
             Work::Drives => self.drives += value,
         }

@@ -17,6 +17,7 @@ pub(crate) struct Connectors {
     /// Connectors of each body.
     pub(super) of: ByBody<ConnectorId>,
     pub(super) states: Vec<ConnectorState>,
+    any_pulls: bool,
 }
 
 impl Connectors {
@@ -26,8 +27,14 @@ impl Connectors {
         Self {
             of: ByBody::new(body_count, ids.zip(all.iter().map(Connector::bodies))),
             states: vec![ConnectorState::default(); all.len()],
+            any_pulls: all.iter().any(Connector::is_pull),
             all,
         }
+    }
+
+    /// True if there are motors, or joints with dry friction.
+    pub(crate) fn any_pulls(&self) -> bool {
+        self.any_pulls
     }
 
     /// Connectors that are tied to a body.

@@ -18,7 +18,7 @@ impl Mechanism<'_> {
                 let (anchor, path) = self.connectors[id.index()].on_rail()?;
                 rail_room(path, a.pose.point_to_world(anchor.point), row.hint.as_ref())
             }
-            RowSource::Anchor(_) => None,
+            RowSource::Anchor(_) | RowSource::Pull(_) => None,
             RowSource::Contact(features) => {
                 let sample = self.sample(row.bodies, features, [a, b]);
                 let lean = if row.leans { 0.0 } else { self.lean(sample, row.bodies, features, [a, b]) };

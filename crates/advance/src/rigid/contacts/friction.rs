@@ -42,6 +42,8 @@ pub(crate) enum Grip {
     /// The row is an anchor along an axis, of a contact that keeps this gap [m]. Beyond what the contacts of its group allow, its force may be as
     /// large as the bound [N].
     Anchor { axis: Axis, kept_gap: f64, bound: f64 },
+    /// The row holds the coordinate of a motor, or of dry friction in a joint, with at most this force [N].
+    Bounded { most: f64 },
 }
 
 impl Grip {
@@ -74,10 +76,14 @@ impl ActiveRow {
         self.grips.iter().any(|grip| grip.slip_share().is_some())
     }
 
-    /// What an anchor bears beyond what its contacts allow [N]; `None` for other rows.
+    /// What an anchor bears beyond what its contacts allow, and what a motor bears [N]; `None` for other rows.
     #[inline]
     pub(crate) fn anchor_bound(&self) -> Option<f64> {
-        if let Grip::Anchor { bound, .. } = self.grips[0] { Some(bound) } else { None }
+        match self.grips[0] {
+            Grip::Anchor { bound, .. } => Some(bound),
+            Grip::Bounded { most } => Some(most),
+            _ => None,
+        }
     }
 
     /// The anchors by which a contact is kept, each with the coefficient [-] up to which it is.
@@ -119,7 +125,7 @@ impl ActiveRow {
             Grip::Sticks { coefficient, .. } => {
                 Some(RowFriction { force: along, slip_speed: 0.0, most: coefficient * normal, sticks: true })
             }
-            Grip::Smooth | Grip::Anchor { .. } => None,
+            Grip::Smooth | Grip::Anchor { .. } | Grip::Bounded { .. } => None,
         }
     }
 }

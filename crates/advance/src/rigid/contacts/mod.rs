@@ -14,6 +14,7 @@ pub(super) mod ends;
 pub(super) mod friction;
 pub(super) mod gaps;
 pub(super) mod pairs;
+pub(super) mod pulls;
 pub(super) mod rolling;
 pub(super) mod rows;
 pub(super) mod table;

@@ -46,7 +46,7 @@ impl Mechanism<'_> {
         let force = match row.grip(Axis::Turn) {
             Grip::Slips { side, coefficient, .. } => -side * coefficient * normal,
             Grip::Sticks { .. } => along,
-            Grip::Smooth | Grip::Anchor { .. } => return None,
+            Grip::Smooth | Grip::Anchor { .. } | Grip::Bounded { .. } => return None,
         };
         let radius = self.rolling_radius((row.bodies, features))?;
         Some(RowRolling { moment: radius * force, radius })

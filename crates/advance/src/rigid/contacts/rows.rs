@@ -29,6 +29,8 @@ pub(crate) enum RowSource {
     Anchor([FeatureId; 2]),
     /// A row of a connector, by its index there.
     Connector(ConnectorId, usize),
+    /// The coordinate of a motor or of dry friction in a joint that holds it.
+    Pull(ConnectorId),
 }
 
 /// An active row: its gap is kept as it is.
@@ -113,6 +115,7 @@ impl Mechanism<'_> {
                 let sample = self.measure_connector((id, index), [a, b], None, row.hint.as_ref());
                 RowMoment { gap: sample.gap, kinematics: sample.kinematics }
             }
+            RowSource::Pull(id) => self.measure_held(row, id, [a, b]),
             RowSource::Contact(features) => self.measure_contact(row.bodies, features, [a, b]),
             RowSource::Anchor(features) => self.measure_anchor_row(row, features, [a, b]),
         }
@@ -142,7 +145,9 @@ impl Mechanism<'_> {
     /// The part [m/s] of a row's rate that is prescribed: the bodies that can move have no share in it.
     pub(crate) fn prescribed_rate(&self, row: &ActiveRow) -> f64 {
         match row.source {
-            RowSource::Connector(id, _) => self.connectors[id.index()].prescribed_rate(self.time),
+            RowSource::Connector(id, _) | RowSource::Pull(id) => {
+                self.connectors[id.index()].prescribed_rate(self.time)
+            }
             RowSource::Contact(_) | RowSource::Anchor(_) => 0.0,
         }
     }
@@ -218,7 +223,7 @@ impl Mechanism<'_> {
                 let mut sides = row.bodies.iter().zip(features);
                 !sides.all(|(&body, feature)| is_full(self.shape(body).feature(feature)))
             }
-            RowSource::Anchor(_) => false,
+            RowSource::Anchor(_) | RowSource::Pull(_) => false,
             RowSource::Connector(id, _) => {
                 let path = self.connectors[id.index()].path();
                 !self.is_in_corner(row) && path.is_some_and(|path| !path.knots().is_empty())
@@ -242,6 +247,10 @@ impl Mechanism<'_> {
         match row.source {
             RowSource::Connector(id, index) => {
                 let sample = self.measure_connector((id, index), [a, b], None, row.hint.as_ref());
+                (sample.point_a, sample.normal)
+            }
+            RowSource::Pull(id) => {
+                let sample = self.measure_connector((id, 0), [a, b], None, None);
                 (sample.point_a, sample.normal)
             }
             RowSource::Contact(features) | RowSource::Anchor(features) => {
@@ -313,16 +322,12 @@ impl ActiveRow {
         self.bilateral && matches!(self.source, RowSource::Connector(..))
     }
 
-    /// True for a row of a coordinate that is driven.
+    /// True for a row of a coordinate that is driven, or held at a speed.
     pub(crate) fn is_driven(&self, connectors: &[Connector]) -> bool {
-        self.driven_by(connectors).is_some_and(Connector::is_driven)
-    }
-
-    /// The connector of a row.
-    fn driven_by<'a>(&self, connectors: &'a [Connector]) -> Option<&'a Connector> {
         match self.source {
-            RowSource::Connector(id, _) => Some(&connectors[id.index()]),
-            RowSource::Contact(_) | RowSource::Anchor(_) => None,
+            RowSource::Connector(id, _) => connectors[id.index()].is_driven(),
+            RowSource::Pull(id) => connectors[id.index()].prescribed_rate(0.0) != 0.0,
+            RowSource::Contact(_) | RowSource::Anchor(_) => false,
         }
     }
 
@@ -330,7 +335,7 @@ impl ActiveRow {
     pub(crate) fn touch(&self) -> Option<Touch> {
         match self.source {
             RowSource::Contact(features) => Some(Touch::new(self.bodies, features)),
-            RowSource::Anchor(_) | RowSource::Connector(..) => None,
+            RowSource::Anchor(_) | RowSource::Connector(..) | RowSource::Pull(_) => None,
         }
     }
 }

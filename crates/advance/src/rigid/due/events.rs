@@ -5,6 +5,7 @@ use crate::rigid::connectors::corners::{go_along, note_corners};
 use crate::rigid::contacts::friction::Grip;
 use crate::rigid::contacts::gaps::leaves;
 use crate::rigid::contacts::pairs::PairId;
+use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::RowSource;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::due::joints::{meet_stop, pass_joint};
@@ -114,7 +115,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
                 work.region.set_cause(Cause::Released(touch));
             }
             let source = row.source;
-            let is_anchor = matches!(source, RowSource::Anchor(_));
+            let is_anchor = matches!(source, RowSource::Anchor(_) | RowSource::Pull(_));
             if group.made() == rooms.assembly.now() && !is_anchor {
                 rooms.zeno.note_pull(rooms.assembly.now());
             }
@@ -125,7 +126,7 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
         }
         SegmentEnd::Change(row) => match (group.rows()[row].touch(), group.rows()[row].source) {
             (_, RowSource::Connector(id, _)) => pass_joint(rooms, work, id),
-            (touch, RowSource::Contact(_) | RowSource::Anchor(_)) => {
+            (touch, RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_)) => {
                 let left = touch.filter(|&touch| leaves(&rooms.assembly, &rooms.connectors, touch));
                 work.region.set_cause(left.map_or(Cause::Other, Cause::RunOff));
                 if let Some(pair) = left.and_then(|left| rooms.pairs.between(left.bodies[0], left.bodies[1]))
@@ -148,6 +149,11 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
                 work.region.set_cause(Cause::Stopped(touch, axis));
                 rooms.zeno.note_stop((touch.bodies, axis, side > 0.0), rooms.assembly.now());
             }
+            handle_change(rooms, work)
+        }
+        SegmentEnd::PullStop(place) => {
+            let Pull { id, force, .. } = group.pulls()[place];
+            work.region.set_cause(Cause::Rests(id, force < 0.0));
             handle_change(rooms, work)
         }
         SegmentEnd::Switch => handle_change(rooms, work),

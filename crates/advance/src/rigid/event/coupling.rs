@@ -55,6 +55,10 @@ pub(crate) fn couple(
     for (_, row) in settling.active() {
         coupling.join(row.bodies.iter().filter_map(|&body| region.place(body)));
     }
+    let held = settling.held().iter().map(|row| row.bodies);
+    for bodies in held.chain(settling.pulled().iter().map(|pull| pull.bodies)) {
+        coupling.join(bodies.into_iter().filter_map(|body| region.place(body)));
+    }
     for &body in region.bodies() {
         for &law in assembly.force_laws().of(body) {
             let named = assembly.force_laws().all[law].bodies();
@@ -62,8 +66,13 @@ pub(crate) fn couple(
         }
     }
     for place in 0..count {
-        let mut tied = connectors.of(region.bodies()[place]).iter();
-        coupling.integrated[place] |= tied.any(|&id| connectors.connector(id).is_stop());
+        for &id in connectors.of(region.bodies()[place]) {
+            // A group watches when a stop is met.
+            if connectors.connector(id).is_stop() {
+                let bodies = connectors.connector(id).bodies();
+                coupling.join(bodies.into_iter().filter_map(|body| region.place(body)));
+            }
+        }
     }
     couple_touching(assembly, coupling, region, settling);
     // A set is integrated if any of its places is.

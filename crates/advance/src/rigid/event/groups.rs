@@ -57,6 +57,7 @@ fn make_group(rooms: &mut Rooms, of: (&Region, &Settling), members: &Members, ro
         members.places(root).map(|place| region.bodies()[place]),
         members.active(settling, root),
     );
+    group.add_pulls(members.pulled(settling, root));
     list_idle(assembly, connectors, &mut group, of, members.touches(root));
     group.list_stops(assembly, connectors);
     group.list_laws(assembly, connectors);

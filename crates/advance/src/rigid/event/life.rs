@@ -223,7 +223,11 @@ pub(crate) fn is_unwatched(
     let mut tied = group.bodies().iter().flat_map(|&body| connectors.of(body));
     group.bodies().iter().all(|body| search.loners()[body.index()])
         && tied.all(|&id| connectors.connector(id).is_bilateral())
-        && group.rows().iter().all(|row| row.bilateral && !mechanism.can_change(row))
+        && group.pulls().is_empty()
+        && group
+            .rows()
+            .iter()
+            .all(|row| row.bilateral && row.anchor_bound().is_none() && !mechanism.can_change(row))
         && group.force_laws().iter().all(|&law| assembly.force_laws().all[law].switches() == 0)
         && group.next_kink(&physics(assembly, connectors), group.start().seconds()).is_none()
 }

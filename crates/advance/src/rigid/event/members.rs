@@ -2,6 +2,7 @@
 //! all groups, as there may be as many groups as bodies.
 
 use crate::rigid::active_set::settling::Settling;
+use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::region::touching::Region;
 use halfgap_collision::BodyId;
@@ -15,6 +16,8 @@ pub(crate) struct Members {
     places: ByRoot,
     active: ByRoot,
     touches: ByRoot,
+    held: ByRoot,
+    pulled: ByRoot,
 }
 
 impl Members {
@@ -38,7 +41,14 @@ impl Members {
         self.touches.clear();
         let touches = region.touches().iter().enumerate();
         self.touches.extend(touches.filter_map(|(index, touch)| Some((root_of(touch.bodies)?, index))));
-        for list in [&mut self.places, &mut self.active, &mut self.touches] {
+        self.held.clear();
+        let held = settling.held().iter().enumerate();
+        self.held.extend(held.filter_map(|(index, row)| Some((root_of(row.bodies)?, index))));
+        self.pulled.clear();
+        let pulled = settling.pulled().iter().enumerate();
+        self.pulled.extend(pulled.filter_map(|(index, pull)| Some((root_of(pull.bodies)?, index))));
+        let Self { places, active, touches, held, pulled } = self;
+        for list in [places, active, touches, held, pulled] {
             list.sort_unstable();
         }
     }
@@ -48,9 +58,15 @@ impl Members {
         of_root(&self.places, root)
     }
 
-    /// The active rows of a group.
+    /// The active rows of a group, and those that hold a coordinate.
     pub(super) fn active(&self, settling: &Settling, root: usize) -> impl Iterator<Item = ActiveRow> + Clone {
-        of_root(&self.active, root).map(|index| settling.active()[index].1)
+        let held = of_root(&self.held, root).map(|index| settling.held()[index]);
+        of_root(&self.active, root).map(|index| settling.active()[index].1).chain(held)
+    }
+
+    /// What pulls with all its force on a group.
+    pub(super) fn pulled(&self, settling: &Settling, root: usize) -> impl Iterator<Item = Pull> {
+        of_root(&self.pulled, root).map(|index| settling.pulled()[index])
     }
 
     /// Indices of the touches of a group's bodies.

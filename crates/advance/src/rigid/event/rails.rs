@@ -70,7 +70,7 @@ pub(crate) fn renew_hints(assembly: &Assembly, connectors: &mut Connectors, grou
         RowSource::Connector(id, _) => {
             connectors.connector(id).path().is_some_and(|path| !path.knots().is_empty())
         }
-        RowSource::Contact(_) | RowSource::Anchor(_) => false,
+        RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_) => false,
     };
     let mechanism = mechanism(assembly, connectors);
     group.renew_hints(|row| !mechanism.is_in_corner(row) && has_knots(row), found, of_stop);

@@ -225,7 +225,8 @@ impl Dynamics<'_> {
         let (position_rates, rest) = rates.split_at_mut(3 * bodies);
         let (velocity_rates, powers) = rest.split_at_mut(3 * bodies);
         let time = self.start.seconds() + offset;
-        let of_group = (self.group.bodies.as_slice(), self.group.force_laws.as_slice());
+        let Group { bodies: of_group, force_laws, pulls, .. } = &*self.group;
+        let of_group = (of_group.as_slice(), force_laws.as_slice(), pulls.as_slice());
         self.stage.accelerate(&self.physics, of_group, time, &self.group.works, powers);
         if self.stage.asks_free_acceleration {
             self.stage.note_free_acceleration(self.physics.mechanism.trajectories, &self.group.bodies);
@@ -233,9 +234,10 @@ impl Dynamics<'_> {
         }
         if !self.group.rows.is_empty() {
             constrain(self);
-            if matches!(self.group.works.last(), Some(Work::Friction(_) | Work::Surfaces | Work::Drives)) {
+            let asks = |work: &Work| !matches!(work, Work::Law(_) | Work::Damping);
+            if self.group.works.last().is_some_and(asks) {
                 self.note_friction_powers(powers);
-                self.note_driving_power(powers);
+                self.note_driving_powers(powers);
             }
         }
         let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;

@@ -83,14 +83,17 @@ impl Dynamics<'_> {
                         let share = match row.grip(Axis::Slip) {
                             Grip::Anchor { axis: Axis::Slip, .. } => 1.0,
                             Grip::Slips { side, coefficient, .. } => -side * coefficient,
-                            Grip::Smooth | Grip::Sticks { .. } | Grip::Anchor { .. } => return 0.0,
+                            Grip::Smooth
+                            | Grip::Sticks { .. }
+                            | Grip::Anchor { .. }
+                            | Grip::Bounded { .. } => return 0.0,
                         };
                         share * force * self.physics.mechanism.running_speed(row)
                     };
                     let of_spares = spares.iter().map(|row| of_row((row, &row.load[0])));
                     *power = rows.iter().zip(forces).map(of_row).chain(of_spares).sum();
                 }
-                Work::Law(_) | Work::Damping | Work::Drives => {}
+                Work::Law(_) | Work::Damping | Work::Drives | Work::Rubbing => {}
             }
         }
     }

@@ -169,6 +169,7 @@ impl ActiveRow {
     /// What the row bears, if it can be one of a lock: a joint, a contact that does not slip, or an anchor.
     fn bears(&self) -> Option<Bears> {
         match (self.source, self.grips[0]) {
+            (RowSource::Pull(_), _) => None,
             (RowSource::Connector(..), _) => self.is_joint().then_some(Bears::Anything),
             (RowSource::Contact(_), _) => (!self.slips()).then_some(Bears::Pressure),
             (RowSource::Anchor(_), Grip::Anchor { axis: Axis::Turn, .. }) => Some(Bears::Rolling),

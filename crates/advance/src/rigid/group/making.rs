@@ -3,6 +3,7 @@
 use crate::ode::Method;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::{Connectors, Stop, is_rope};
+use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::brief::{BRIEFEST, CUT_SHARE};
 use crate::rigid::group::groups::Groups;
@@ -23,6 +24,11 @@ impl Group {
         self.bodies.sort_unstable();
         self.rows.extend(rows.clone().filter(|row| row.bilateral));
         self.rows.extend(rows.filter(|row| !row.bilateral));
+    }
+
+    /// Adds motors and dry friction in joints that act with all their force.
+    pub(crate) fn add_pulls(&mut self, pulls: impl Iterator<Item = Pull>) {
+        self.pulls.extend(pulls);
     }
 
     /// Adds a contact that touches without force, with the gap below which it fires.
@@ -92,8 +98,12 @@ impl Group {
         if self.bodies.iter().any(|&body| assembly.trajectory(body).free_motion().is_damped()) {
             self.works.push(Work::Damping);
         }
-        if self.rows.iter().any(|row| row.is_driven(connectors.all())) {
+        let driven = |pull: &Pull| connectors.connector(pull.id).prescribed_rate(0.0) != 0.0;
+        if self.rows.iter().any(|row| row.is_driven(connectors.all())) || self.pulls.iter().any(driven) {
             self.works.push(Work::Drives);
+        }
+        if self.pulls.iter().any(|pull| !driven(pull)) {
+            self.works.push(Work::Rubbing);
         }
     }
 
@@ -109,7 +119,7 @@ impl Group {
             RowSource::Connector(id, _) => {
                 connectors.connector(id).path().is_some_and(|path| path.is_spline())
             }
-            RowSource::Contact(_) | RowSource::Anchor(_) => false,
+            RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_) => false,
         });
         let lasted = pasts.map(|past| past.lasted).fold(0.0, f64::max);
         let soon = SEVERAL * lasted;

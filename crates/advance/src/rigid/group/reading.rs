@@ -2,6 +2,7 @@
 
 use crate::ode::SegmentPolynomial;
 use crate::rigid::connectors::store::Stop;
+use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::state::{Group, SegmentEnd, Work};
@@ -182,7 +183,7 @@ impl Group {
         let of_laws = self.force_laws.iter().filter_map(|&law| physics.force_laws[law].next_kink(after));
         let of_drives = self.rows.iter().filter_map(|row| match row.source {
             RowSource::Connector(id, _) => physics.mechanism.connectors[id.index()].next_kink(after),
-            RowSource::Contact(_) | RowSource::Anchor(_) => None,
+            RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_) => None,
         });
         of_laws.chain(of_drives).reduce(f64::min)
     }
@@ -190,6 +191,12 @@ impl Group {
     #[inline]
     pub(crate) fn stops(&self) -> &[Stop] {
         &self.stops
+    }
+
+    /// Motors, and dry friction in joints, that act with all their force.
+    #[inline]
+    pub(crate) fn pulls(&self) -> &[Pull] {
+        &self.pulls
     }
 
     /// The works.

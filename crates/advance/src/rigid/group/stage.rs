@@ -2,7 +2,8 @@
 
 use crate::rigid::bodies::force_law::{Wrench, Wrenches};
 use crate::rigid::bodies::trajectory::Trajectory;
-use crate::rigid::contacts::rows::{ActiveRow, RowMoment};
+use crate::rigid::contacts::pulls::Pull;
+use crate::rigid::contacts::rows::{ActiveRow, RowMoment, moving_of};
 use crate::rigid::group::friction::Slipping;
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::samples::Samples;
@@ -184,7 +185,7 @@ impl Stage {
     pub(crate) fn accelerate(
         &mut self,
         physics: &Physics<'_>,
-        (bodies, force_laws): (&[BodyId], &[usize]),
+        (bodies, force_laws, pulls): (&[BodyId], &[usize], &[Pull]),
         time: f64,
         works: &[Work],
         powers: &mut [f64],
@@ -199,6 +200,15 @@ impl Stage {
             let power = does_work.then(|| &mut powers[next]);
             self.add_force_law(physics, law, time, power);
             next += usize::from(does_work);
+        }
+        for pull in pulls {
+            let movings = pull.bodies.map(|body| moving_of(&self.movings, body));
+            let jacobian = physics.mechanism.pull_kinematics(pull.id, movings).jacobian;
+            for (body, entries) in pull.bodies.into_iter().zip(jacobian.as_chunks::<3>().0) {
+                let Some(sum) = self.wrenches.get_mut(body.index()) else { continue };
+                sum.force += pull.force * DVec2::new(entries[0], entries[1]);
+                sum.torque += pull.force * entries[2];
+            }
         }
         let damping = works.iter().position(|&work| work == Work::Damping);
         let mut damped = 0.0;

@@ -3,6 +3,7 @@
 use crate::ode::{Accepted, SegmentPolynomial};
 use crate::rigid::connectors::store::Stop;
 use crate::rigid::contacts::friction::Axis;
+use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::ActiveRow;
 use crate::rigid::group::loops::Loops;
 use crate::rigid::group::singular::Kept;
@@ -24,8 +25,10 @@ pub(crate) enum Work {
     Friction(u32),
     /// Of surfaces that run.
     Surfaces,
-    /// Of drives, and of motors that hold their speed.
+    /// Of drives and motors.
     Drives,
+    /// Of dry friction in joints that move.
+    Rubbing,
 }
 
 /// Event that ends a group's segment.
@@ -44,6 +47,8 @@ pub(crate) enum SegmentEnd {
     Switch,
     /// The slip of a contact along an axis stops.
     SlipStop(usize, Axis),
+    /// A joint with dry friction stops, or one with a motor comes to its speed.
+    PullStop(usize),
 }
 
 /// Bodies with a common segment.
@@ -67,6 +72,8 @@ pub(crate) struct Group {
     /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
     pub(super) idle: Vec<ActiveRow>,
     pub(super) stops: Vec<Stop>,
+    /// Motors, and dry friction in joints, that act with all their force.
+    pub(super) pulls: Vec<Pull>,
     /// Force laws that act on its bodies, ascending.
     pub(super) force_laws: Vec<usize>,
     pub(super) works: Vec<Work>,
@@ -172,6 +179,7 @@ impl Group {
             sides: emptied(old.sides),
             idle: emptied(old.idle),
             stops: emptied(old.stops),
+            pulls: emptied(old.pulls),
             force_laws: emptied(old.force_laws),
             works: emptied(old.works),
             active: old.active,

@@ -19,6 +19,8 @@ pub(crate) enum Cause {
     Released(Touch),
     /// The slip of a contact along an axis has come to a stop.
     Stopped(Touch, Axis),
+    /// A joint with dry friction has come to rest, or one with a motor to its speed; true if its rate was above that before.
+    Rests(ConnectorId, bool),
     /// The steps of a group have become endlessly short while its contacts slip: their forces grow beyond all bounds.
     Collapsed,
     /// Sunk contacts are put back, where contacts carry impulses only.

@@ -30,6 +30,14 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
         if region.place(other).is_some_and(|earlier| earlier < place) {
             continue;
         }
+        // Bodies between which something pulls, or a stop is to be met, are moved together.
+        if (connector.is_pull() || connector.is_stop()) && view.assembly.is_movable(other) {
+            region.add(other);
+        }
+        // What pulls does nothing in an instant.
+        if connector.is_pull() {
+            continue;
+        }
         let moving = [a, b].map(|body| view.assembly.moving_at(body, time));
         for row in 0..view.connectors.row_count(id) {
             let mut record = view.connectors.connector_record(view.assembly, id, row, &moving, time);

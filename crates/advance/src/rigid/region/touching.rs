@@ -200,8 +200,18 @@ impl Region {
 
     /// A unilateral row between the bodies of a record, with other coefficients; `None` if neither of its bodies moves.
     pub(crate) fn row_along(&self, record: &Collision, coefficients: &[f64; 6], offset: f64) -> Option<Row> {
+        self.row_between(record.bodies(), coefficients, offset)
+    }
+
+    /// A unilateral row between two bodies; `None` if neither of them moves.
+    pub(crate) fn row_between(
+        &self,
+        bodies: [BodyId; 2],
+        coefficients: &[f64; 6],
+        offset: f64,
+    ) -> Option<Row> {
         let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(ProblemBody);
-        Row::between(record.bodies().map(place), coefficients, offset)
+        Row::between(bodies.map(place), coefficients, offset)
     }
 
     /// The row of a record with a force whose direction differs from the normal by a turn.

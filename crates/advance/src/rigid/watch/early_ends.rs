@@ -15,6 +15,7 @@ use crate::rigid::watch::crossing::{
 };
 use crate::rigid::watch::earliest::Earliest;
 use crate::rigid::watch::overdue::find_overdue;
+use crate::rigid::watch::pulls::find_pull_stop;
 use crate::rigid::watch::releases::{firm_part, look_for_release};
 use crate::rigid::watch::slips::find_slip_stop;
 use crate::rigid::watch::staying::{find_bounds, stays};
@@ -101,6 +102,7 @@ fn find_geometric_event(dynamics: &mut Dynamics<'_>) -> Option<(f64, SegmentEnd)
     find_first(dynamics, &mut earliest, (&samples.heights, all), &SINKINGS);
     dynamics.stage.take_back_samples(samples);
     find_slip_stop(dynamics, &mut earliest);
+    find_pull_stop(dynamics, &mut earliest);
     for place in 0..dynamics.group.stops().len() {
         let stop = dynamics.group.stops()[place];
         earliest.offer(find_stop(dynamics, stop), SegmentEnd::Stop(stop.id));

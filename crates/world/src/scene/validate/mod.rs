@@ -32,7 +32,9 @@ pub(super) fn validate_world(scene: &Scene) -> Result<(), SceneError> {
     let names = bodies::collect_names(&scene.bodies, &top.field("body"))?;
     each(&top.field("body"), &scene.bodies, |body, at| bodies::validate(body, &names, at))?;
     bodies::validate_static_friction((&scene.bodies, &scene.pairs), &top.field("body"))?;
-    each(&top.field("connector"), &scene.connectors, |one, at| connectors::validate(one, &names, at))?;
+    each(&top.field("connector"), &scene.connectors, |one, at| {
+        connectors::validate(one, (&names, &scene.run), at)
+    })?;
     each(&top.field("force"), &scene.forces, |one, at| forces::validate(one, &names, at))?;
     let at = top.field("pair");
     let check = |index: usize| {

@@ -50,7 +50,7 @@ impl Dynamics<'_> {
     pub(super) fn find_tree_for(&mut self, error: f64) {
         let Group { tree, bodies, rows, active, .. } = &mut *self.group;
         let mechanism = &self.physics.mechanism;
-        if rows.iter().any(|row| !row.bilateral) || active.is_soft() {
+        if rows.iter().any(|row| !row.bilateral || row.anchor_bound().is_some()) || active.is_soft() {
             return;
         }
         tree.hung.clear();

@@ -24,16 +24,16 @@ impl Ode for Hanging<'_, '_> {
     fn derivative(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) -> Result<(), Infallible> {
         self.0.set_clock(offset);
         let Dynamics { physics, group, stage, start } = &mut *self.0;
-        let Group { tree, bodies, force_laws, works, .. } = &mut **group;
+        let Group { tree, bodies, force_laws, pulls, works, .. } = &mut **group;
         stage.evaluations += 1;
         let count = tree.count();
         tree.place(state, bodies, &mut stage.movings);
         rates[..count].copy_from_slice(&state[count..2 * count]);
         let (rates, powers) = rates[count..].split_at_mut(count);
-        stage.accelerate(physics, (bodies, force_laws), start.seconds() + offset, works, powers);
+        stage.accelerate(physics, (bodies, force_laws, pulls), start.seconds() + offset, works, powers);
         tree.accelerate(&mut stage.accelerations);
         self.0.hold_loop_rows();
-        self.0.note_driving_power(powers);
+        self.0.note_driving_powers(powers);
         let Group { tree, kept, .. } = &mut *self.0.group;
         if !tree.loop_rows.rows.is_empty() {
             kept.note(offset, tree.loop_rows.kept);

@@ -1,0 +1,123 @@
+//! Motors and dry friction in joints at an event: which of them act with all their force, and which hold.
+//!
+//! One whose rate is off acts with all its force. One at its speed has a row in the problem, bounded by a constant; where the bound is
+//! reached it acts with all its force from then on. Those that act so are rows, too, whose bounds are one and the same force.
+
+use crate::rigid::active_set::settling::Settling;
+use crate::rigid::active_set::slips::{MOVES, NARROWED};
+use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::Connectors;
+use crate::rigid::contacts::friction::Grip;
+use crate::rigid::contacts::pulls::Pull;
+use crate::rigid::contacts::rows::{ActiveRow, RowSource};
+use crate::rigid::region::cause::Cause;
+use crate::rigid::region::touching::Region;
+use crate::rigid::shares::ROUNDED_FORCE;
+use crate::time::Time;
+use halfgap_collision::{BodyId, ConnectorId, ConnectorKind, ConnectorSample};
+
+/// A motor, or dry friction in a joint, of a region's bodies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pulling {
+    pub(super) id: ConnectorId,
+    pub(super) bodies: [BodyId; 2],
+    pub(super) row: ConnectorSample,
+    /// Largest force along its row [N].
+    most: f64,
+    /// The side to which its rate is off, 1 or -1; `None` for one that may hold.
+    side: Option<f64>,
+    /// Number of its row in the problem, if it has one.
+    pub(super) number: Option<usize>,
+}
+
+impl Pulling {
+    /// Bounds [N] of its row.
+    pub(super) fn bounds(&self) -> [f64; 2] {
+        match self.side {
+            Some(side) => [-side * self.most; 2],
+            None => {
+                let most = (1.0 - NARROWED) * self.most;
+                [-most, most]
+            }
+        }
+    }
+}
+
+/// Lists what pulls on the region's bodies. Motors do nothing in a jump.
+pub(super) fn list_pulls(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    region: &Region,
+    settling: &mut Settling,
+    time: Time,
+) {
+    settling.pulls.clear();
+    if settling.jumps || !connectors.any_pulls() {
+        return;
+    }
+    for (place, &body) in region.bodies().iter().enumerate() {
+        for &id in connectors.of(body) {
+            let ConnectorKind::Pull { coordinate, most, .. } = &connectors.connector(id).kind else {
+                continue;
+            };
+            let bodies = coordinate.bodies();
+            if bodies.into_iter().filter_map(|other| region.place(other)).any(|other| other < place) {
+                continue;
+            }
+            let row = connectors.measure_connector(assembly, id, 0, time);
+            let rate = row.kinematics.rate;
+            // What the error of the step leaves of a rate that has come to an end is none.
+            let rests = matches!(region.cause(), Cause::Rests(rested, _) if rested == id);
+            let rest = if rests { 2.0 * rate.abs() } else { assembly.slip_rest() };
+            let given = settling.given_up.iter().find(|(other, _)| *other == id).map(|&(_, side)| side);
+            let side = given.or_else(|| (rate.abs() > rest).then(|| rate.signum()));
+            let most = most / coordinate.scale();
+            settling.pulls.push(Pulling { id, bodies, row, most, side, number: None });
+        }
+    }
+}
+
+/// Lets those pull with all their force that cannot hold: in the last solution they are at their bound, and their rate
+/// changes. One that has just come to its speed does not go on to the same side.
+pub(super) fn give_up_holding(region: &Region, settling: &mut Settling) {
+    let Settling { pulls, given_up, solution, problem, .. } = settling;
+    let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+    for pull in pulls.iter().filter(|pull| pull.side.is_none()) {
+        let Some(number) = pull.number else { continue };
+        let (Some(force), Some(along)) = (solution.force.get(number), solution.acceleration.get(number))
+        else {
+            continue;
+        };
+        let is_at_bound = force.abs() >= (1.0 - ROUNDED_FORCE) * pull.bounds()[1];
+        let was = Cause::Rests(pull.id, *along > 0.0);
+        if is_at_bound && along.abs() > MOVES * largest && region.cause() != was {
+            given_up.push((pull.id, along.signum()));
+        }
+    }
+}
+
+/// Sorts those that hold from those that act with all their force.
+pub(super) fn choose_pulls(settling: &mut Settling) {
+    let Settling { pulls, given_up, solution, held, pulled, .. } = settling;
+    held.clear();
+    pulled.clear();
+    for &Pulling { id, bodies, row, most, side, number } in &*pulls {
+        let given = given_up.iter().find(|(other, _)| *other == id).map(|&(_, side)| side);
+        if let Some(side) = side.or(given) {
+            let left = if given.is_some() { row.kinematics.rate } else { 0.0 };
+            pulled.push(Pull { id, bodies, force: -side * most, left });
+            continue;
+        }
+        let force = number.and_then(|number| solution.force.get(number)).copied().unwrap_or(0.0);
+        held.push(ActiveRow {
+            source: RowSource::Pull(id),
+            bodies,
+            bilateral: true,
+            gap: row.gap,
+            hint: None,
+            leans: false,
+            grips: [Grip::Bounded { most }, Grip::Smooth],
+            load: [force, 0.0, 0.0],
+        });
+    }
+}
