@@ -6,8 +6,10 @@
 //! *Invariant*: rate and acceleration are the derivatives of the value, and the acceleration is continuous but for the
 //! times that [`PrescribedMotion::next_kink`] tells.
 
+mod body_motion;
 mod table;
 
+pub use body_motion::BodyMotion;
 pub use table::{MotionTable, TableError};
 
 use std::f64::consts::TAU;

@@ -1,5 +1,6 @@
 //! Bodies in a scene file.
 
+use super::motion::MotionData;
 use super::shape::ShapeData;
 use super::vector::Vector;
 use serde::Deserialize;
@@ -61,20 +62,6 @@ pub struct BodyData {
     /// Names of bodies with which this one never collides, nor they with it.
     #[serde(default)]
     pub passes_through: Vec<String>,
-}
-
-/// Motion of a fixed body.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MotionData {
-    /// Velocity of the centre of mass [m/s].
-    pub velocity: Option<Vector>,
-    /// Angular velocity [rad/s].
-    pub angular_velocity: Option<f64>,
-    /// Oscillation; not simulated yet.
-    pub oscillate: Option<serde::de::IgnoredAny>,
-    /// Motion by a table; not simulated yet.
-    pub table: Option<serde::de::IgnoredAny>,
 }
 
 fn full_elasticity() -> f64 {

@@ -12,6 +12,7 @@ mod expected;
 mod field_path;
 mod force;
 mod locate;
+mod motion;
 mod named;
 mod nearest;
 mod one_key;
@@ -26,7 +27,7 @@ mod validate;
 mod varied;
 mod vector;
 
-pub use body::{BodyData, MotionData, WORLD};
+pub use body::{BodyData, WORLD};
 pub use connector::{
     AxisFrame, ConnectorData, ConnectorOptions, GearData, JointData, JointSpringData, LengthData, LimitsData,
     MotorData, NormalFrame, PinData, PointData, PulleyData, RackData, RailData, RailPath, RailStopData,
@@ -39,6 +40,7 @@ pub use force::{
     ConstantData, DampingData, ForceData, GravityData, MutualGravityData, PushData, RotatingData, SineData,
     SpringData, TableData, TorsionSpringData, VaryData,
 };
+pub use motion::{BodyTableData, DriveData, MotionData, OscillateBodyData, OscillateData, ValueTableData};
 pub use named::NamedData;
 pub use pair::PairData;
 pub use probe::{AngleData, ConnectorRef, DistanceData, ProbeData};

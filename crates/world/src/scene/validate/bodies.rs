@@ -1,9 +1,9 @@
 //! Checks the bodies.
 
-use super::{At, Names, each, optional, shape};
+use super::{At, Names, each, motion, optional, shape};
 use crate::scene::body::WORLD;
 use crate::scene::error::SceneError;
-use crate::scene::{BodyData, MotionData, PairData, Vector};
+use crate::scene::{BodyData, PairData, RunData, Vector};
 use std::collections::BTreeMap;
 
 /// Collects the names of all bodies, and checks that they are not empty, not reserved, and unique.
@@ -25,7 +25,12 @@ pub(super) fn collect_names<'a>(bodies: &'a [BodyData], at: &At<'_>) -> Result<N
     Ok(Names(first_with.into_keys().collect()))
 }
 
-pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Result<(), SceneError> {
+pub(super) fn validate(
+    body: &BodyData,
+    run: &RunData,
+    names: &Names<'_>,
+    at: &At<'_>,
+) -> Result<(), SceneError> {
     shape::validate(&body.shape, &at.field("shape"))?;
     optional(body.mass, |mass| at.field("mass").positive(mass, "kg"))?;
     optional(body.density, |density| at.field("density").positive(density, "kg/m^2"))?;
@@ -51,7 +56,7 @@ pub(super) fn validate(body: &BodyData, names: &Names<'_>, at: &At<'_>) -> Resul
     at.field("surface_velocity").finite(body.surface_velocity)?;
     at.field("rolling_resistance").not_negative(body.rolling_resistance, "")?;
     at.field("tangential_elasticity").zero_to_one(body.tangential_elasticity)?;
-    optional(body.motion.as_ref(), |motion| validate_motion(motion, body, &at.field("motion")))?;
+    optional(body.motion.as_ref(), |motion| motion::validate(motion, body, run, &at.field("motion")))?;
     each(&at.field("passes_through"), &body.passes_through, |other, at| {
         names.require(other, at)?;
         if *other == body.name { Err(at.error("is the body itself, which it cannot meet")) } else { Ok(()) }
@@ -83,14 +88,6 @@ pub(super) fn validate_static_friction(
         }
     }
     Ok(())
-}
-
-fn validate_motion(motion: &MotionData, body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {
-    if !body.fixed {
-        return Err(at.error("only a fixed body is moved: give it `fixed = true`, or a `velocity` instead"));
-    }
-    optional(motion.velocity, |velocity| at.field("velocity").finite_point(velocity))?;
-    optional(motion.angular_velocity, |spin| at.field("angular_velocity").finite(spin))
 }
 
 fn validate_inertia(body: &BodyData, at: &At<'_>) -> Result<(), SceneError> {

@@ -5,6 +5,7 @@ mod check;
 mod connectors;
 mod expected;
 mod forces;
+mod motion;
 mod pairs;
 mod probes;
 mod run;
@@ -30,7 +31,7 @@ pub(super) fn validate_world(scene: &Scene) -> Result<(), SceneError> {
     let top = At::Top;
     validate_run(&scene.run)?;
     let names = bodies::collect_names(&scene.bodies, &top.field("body"))?;
-    each(&top.field("body"), &scene.bodies, |body, at| bodies::validate(body, &names, at))?;
+    each(&top.field("body"), &scene.bodies, |body, at| bodies::validate(body, &scene.run, &names, at))?;
     bodies::validate_static_friction((&scene.bodies, &scene.pairs), &top.field("body"))?;
     each(&top.field("connector"), &scene.connectors, |one, at| {
         connectors::validate(one, (&names, &scene.run), at)
