@@ -484,10 +484,15 @@ fn may_collide(scene: &Scene, world: &World, a: BodyId, b: BodyId) -> bool {
     };
     let is = |body: BodyId, name: &str| world.name(body) == name;
     let joined = scene.connectors.iter().any(|connector| {
-        let (first, second) = connector.points();
-        let Some(second) = second else { return false };
+        let [Some(first), Some(second)] = connector.points() else { return false };
         let both = (is(a, &first.body) && is(b, &second.body)) || (is(b, &first.body) && is(a, &second.body));
-        let joins = matches!(connector.data, ConnectorData::Pin(_) | ConnectorData::Slot(_));
+        let joins = matches!(
+            connector.data,
+            ConnectorData::Pin(_)
+                | ConnectorData::Slot(_)
+                | ConnectorData::Weld(_)
+                | ConnectorData::Slider(_)
+        );
         both && joins && !connector.options().collide
     });
     !joined && !passes(a, b) && !passes(b, a)

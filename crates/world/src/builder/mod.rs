@@ -272,6 +272,7 @@ impl WorldBuilder {
         self.stop_vanishing();
         self.align();
         self.add_springs();
+        let joints = self.joints()?;
         let wrenches = self.wrenches()?;
         let scales = self.scales(&wrenches);
         self.check_resolution(&scales)?;
@@ -289,7 +290,6 @@ impl WorldBuilder {
         ];
         let mut warnings: Vec<String> =
             self.warnings.into_iter().chain(warnings.into_iter().flatten()).collect();
-        let joints = self.joints()?;
         let (named, mut bodies): (Vec<_>, Vec<_>) =
             self.bodies.into_iter().zip(self.free_motions).map(into_part).unzip();
         let mut pool = ShapePool::default();

@@ -78,10 +78,10 @@ pub(super) fn rows<'a>(
         .iter()
         .enumerate()
         .filter(move |(_, one)| !one.is_pull() && !one.bodies().into_iter().all(is_fixed));
-    movable.flat_map(|(index, connector)| {
+    let time = connectors.start();
+    movable.flat_map(move |(index, connector)| {
         let ([a, b], carrier) = movings_of(bodies, connector);
         (0..connector.row_count()).map(move |row| {
-            let time = connectors.start();
             let surroundings = Surroundings { time, carrier: &carrier, ..Surroundings::default() };
             (index, connector, connector.measure_in(row, [&a, &b], &surroundings))
         })

@@ -9,8 +9,7 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::{Group, Work};
 
 impl Dynamics<'_> {
-    /// Writes the powers [W] of drives and of rubbing joints. The stage has the forces of all rows, of a group that is stepped as a tree of
-    /// those beside its pins.
+    /// Writes the powers [W] of drives and of rubbing joints. The stage has the forces of all rows, or of those beside the pins of a tree.
     pub(crate) fn note_driving_powers(&self, powers: &mut [f64]) {
         let Group { works, rows, tree, pulls, .. } = &*self.group;
         let mechanism = &self.physics.mechanism;
@@ -30,10 +29,11 @@ impl Dynamics<'_> {
         for (power, work) in powers.iter_mut().zip(works) {
             match work {
                 Work::Drives => {
-                    let of_rows: f64 = if tree.is_used() {
-                        tree.rows_beside().zip(&self.stage.forces).map(of_row).sum()
+                    let forces = &self.stage.forces;
+                    let of_rows: f64 = if forces.len() < rows.len() {
+                        tree.rows_beside().zip(forces).map(of_row).sum()
                     } else {
-                        self.stage.forces.iter().enumerate().map(of_row).sum()
+                        forces.iter().enumerate().map(of_row).sum()
                     };
                     *power = of_rows + of_pulls(true);
                 }

@@ -247,8 +247,13 @@ impl Dynamics<'_> {
 
     /// Finds the rates of a state of the group, whether it is stepped as a tree or not.
     pub(crate) fn find_rates_at(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
-        let constrain = if self.group.tree.is_used() { Self::hang } else { Self::solve_rows };
-        self.find_rates(offset, state, rates, constrain);
+        if self.group.tree.is_used() {
+            self.find_rates(offset, state, rates, Self::hang);
+            // Those beside the pins are not all.
+            self.stage.forces.clear();
+        } else {
+            self.find_rates(offset, state, rates, Self::solve_rows);
+        }
     }
 
     /// Finds the rates of a state of the group, its largest acceleration without the forces of rows, and the length

@@ -35,7 +35,6 @@ pub(super) fn validate(
 }
 
 /// Checks the motion of a driven coordinate.
-#[expect(dead_code, reason = "connectors have no drive in scenes yet")]
 pub(super) fn validate_drive(drive: &DriveData, run: &RunData, at: &At<'_>) -> Result<(), SceneError> {
     let at = at.field(drive.key());
     match drive {

@@ -17,7 +17,7 @@ impl Dynamics<'_> {
     /// forces [N] of all rows; bodies are in place.
     pub(crate) fn hang_and_tell(&mut self) {
         let free = self.stage.accelerations.clone();
-        self.pull_tree();
+        self.hang();
         let Group { tree, sides, rows, bodies, .. } = &*self.group;
         let mut forces = vec![0.0; rows.len()];
         // Force [N] of all rows on each body of the group; at the end that of its own pin.

@@ -121,15 +121,10 @@ impl Dynamics<'_> {
     }
 
     /// Turns the accelerations in the stage, which are without forces of rows, into those with them; bodies are in
-    /// place. The forces of rows are not found.
+    /// place. Leaves the forces of the rows beside the pins in the stage; those of the pins are not found.
     pub(crate) fn hang(&mut self) {
-        self.pull_tree();
-        self.stage.forces.clear();
-    }
-
-    /// As [`hang`](Self::hang), but leaves the forces of the rows beside the pins in the stage, if there are any.
-    pub(super) fn pull_tree(&mut self) {
         self.stage.gap_error = self.largest_gap_error();
+        self.stage.forces.clear();
         let Group { tree, bodies, .. } = &mut *self.group;
         tree.find_stances(bodies, &self.stage.movings);
         tree.accelerate(&mut self.stage.accelerations);
