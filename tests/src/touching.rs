@@ -73,7 +73,8 @@ mod tests {
         let contact = ContactForce {
             bodies,
             connector: None,
-            point,
+            point: Some(point),
+            torque: None,
             normal,
             force,
             friction: None,

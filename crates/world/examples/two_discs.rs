@@ -29,13 +29,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     for impact in impacts {
         for row in &impact.rows {
+            let Some(point) = row.point else { continue };
             println!(
                 "\n{} and {} met at {:.9} s in ({:.4}, {:.4}) m: {:.4} N s turned a closing speed of {:.4} m/s round.",
                 world.name(row.primary),
                 world.name(row.normal_body),
                 impact.time,
-                row.point.x,
-                row.point.y,
+                point.x,
+                point.y,
                 row.impulse,
                 -row.velocity_before
             );

@@ -1,12 +1,15 @@
 //! The advance of a world, and how it tells its caller what happens. The crate
 //! `halfgap-advance` finds and handles the events.
 
+use crate::builder::Joints;
 use crate::event::{ContactEvent, Event, ImpactRow};
 use crate::run_error::RunError;
 use crate::strategy::Strategy;
 use crate::world::{World, contact_force};
+use glam::DVec2;
 use halfgap_advance::rigid::{AdvanceError, ContactChanges, Handled, ImpactReport, RowForce};
 use halfgap_advance::{Time, advance_watched};
+use halfgap_collision::Collision;
 use std::ops::ControlFlow;
 
 impl World {
@@ -105,10 +108,11 @@ impl World {
         if self.tell_start(on_event).is_break() {
             return self.conclude(Ok(ControlFlow::Break(())), self.strategy.now());
         }
-        let (strategy, told) = (&mut self.strategy, &mut self.told);
+        let (strategy, told, joints) = (&mut self.strategy, &mut self.told, &self.joints);
         let outcome = advance_watched(strategy, until, |strategy, handled| {
-            let told =
-                handled.map_or(ControlFlow::Continue(()), |&handled| tell(told, strategy, handled, on_event));
+            let told = handled.map_or(ControlFlow::Continue(()), |&handled| {
+                tell(told, (strategy, joints), handled, on_event)
+            });
             let after = after_each(strategy.now().seconds(), handled.is_none());
             if told.is_break() { told } else { after }
         });
@@ -130,10 +134,11 @@ impl World {
         }
         let mut stops = false;
         if self.strategy.counts().impacts > 0 {
-            write_impact(&mut self.told, self.strategy.last_impact());
+            write_impact(&mut self.told, self.strategy.last_impact(), &self.joints);
             stops |= on_event(&self.told).is_break();
         }
-        stops |= tell_oddities(self.strategy.contact_changes(), self.strategy.now(), on_event);
+        stops |=
+            tell_oddities(self.strategy.contact_changes(), (self.strategy.now(), &self.joints), on_event);
         if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
@@ -141,7 +146,7 @@ impl World {
     /// that had failed before: its last impact has been reported then.
     pub(crate) fn tell_last_words(&mut self, on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>) {
         if let Some(impact) = self.strategy.untold_impact() {
-            write_impact(&mut self.told, impact);
+            write_impact(&mut self.told, impact, &self.joints);
             // The world cannot go on, whatever the caller answers.
             let _ = on_event(&self.told);
         }
@@ -162,18 +167,18 @@ impl World {
 /// Reports an event that was handled, its impact in a reused buffer. Returns `Break` if a callback did.
 pub(crate) fn tell(
     told: &mut Event,
-    strategy: &Strategy,
+    (strategy, joints): (&Strategy, &Joints),
     handled: Handled,
     on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let mut stops = false;
     if handled.impact {
-        write_impact(told, strategy.last_impact());
+        write_impact(told, strategy.last_impact(), joints);
         stops |= on_event(told).is_break();
     }
     let changes = strategy.contact_changes();
-    let told_of = |row: &RowForce| contact_event(row, changes.time);
-    stops |= tell_oddities(changes, changes.time, on_event);
+    let told_of = |row: &RowForce| contact_event(row, changes.time, joints);
+    stops |= tell_oddities(changes, (changes.time, joints), on_event);
     let ends = changes.end.iter().map(|row| Event::ContactEnds(told_of(row)));
     let begins = changes.begin.iter().map(|row| Event::ContactBegins(told_of(row)));
     let turns = changes.turn.iter().map(|row| match row.friction {
@@ -186,10 +191,10 @@ pub(crate) fn tell(
     if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
-fn contact_event(row: &RowForce, time: Time) -> ContactEvent {
+fn contact_event(row: &RowForce, time: Time, joints: &Joints) -> ContactEvent {
     ContactEvent {
         time: time.seconds(),
-        contact: contact_force(row),
+        contact: contact_force(row, joints),
         bouncing: row.bouncing,
         energy_change: row.jump,
     }
@@ -198,30 +203,36 @@ fn contact_event(row: &RowForce, time: Time) -> ContactEvent {
 /// Reports contacts that jam, and those whose motion is not unique. True if a callback stops the advance.
 fn tell_oddities(
     changes: &ContactChanges,
-    time: Time,
+    (time, joints): (Time, &Joints),
     on_event: &mut dyn FnMut(&Event) -> ControlFlow<()>,
 ) -> bool {
-    let jams = changes.jam.iter().map(|row| Event::Jams(contact_event(row, time)));
-    let undecided = changes.undecided.iter().map(|row| Event::Undecided(contact_event(row, time)));
+    let jams = changes.jam.iter().map(|row| Event::Jams(contact_event(row, time, joints)));
+    let undecided = changes.undecided.iter().map(|row| Event::Undecided(contact_event(row, time, joints)));
     jams.chain(undecided).fold(false, |stops, event| stops | on_event(&event).is_break())
 }
 
 /// Writes the report of an impact into a reused buffer, as an [`Impact`].
-fn write_impact(told: &mut Event, report: &ImpactReport) {
+fn write_impact(told: &mut Event, report: &ImpactReport, joints: &Joints) {
     let Event::Impact(impact) = told else { return };
     impact.time = report.time.seconds();
     impact.energy_change = report.energy_change;
     impact.rows.clear();
-    impact.rows.extend(report.rows.iter().map(|row| ImpactRow {
-        primary: row.collision.parties.primary.body,
-        normal_body: row.collision.parties.normal.body,
-        connector: row.collision.connector(),
-        point: row.collision.geometry.point_primary,
-        normal: row.collision.geometry.normal,
-        gap: row.collision.geometry.distance,
-        velocity_before: row.rate_before,
-        velocity_after: row.rate_after,
-        impulse: row.impulse,
+    impact.rows.extend(report.rows.iter().map(|row| {
+        let Collision { parties, geometry, motion, .. } = &row.collision;
+        // A row without a normal is a torque, in units of an angle.
+        let is_torque = geometry.normal == DVec2::ZERO;
+        let lever = if is_torque { motion.kinematics.jacobian[2] } else { 1.0 };
+        ImpactRow {
+            primary: parties.primary.body,
+            normal_body: parties.normal.body,
+            connector: row.collision.connector().map(|id| joints.whole(id)),
+            point: (!is_torque).then_some(geometry.point_primary),
+            normal: geometry.normal,
+            gap: geometry.distance / lever,
+            velocity_before: row.rate_before / lever,
+            velocity_after: row.rate_after / lever,
+            impulse: row.impulse * lever,
+        }
     }));
     impact.states.clone_from(&report.states);
 }

@@ -65,9 +65,10 @@ pub struct ImpactRow {
     pub normal_body: BodyId,
     /// The connector whose row this is; `None` for bodies that touch.
     pub connector: Option<ConnectorId>,
-    /// World position [m] at which the impulse acts on the primary body.
-    pub point: DVec2,
-    /// Unit normal, from the normal body to the primary one.
+    /// World position [m] at which the impulse acts on the primary body; `None` for a torque, whose gap is an angle [rad], with rates
+    /// [rad/s] and an angular impulse [N m s].
+    pub point: Option<DVec2>,
+    /// Unit normal, from the normal body to the primary one; zero for a torque.
     pub normal: DVec2,
     /// Gap along the normal [m], negative where bodies overlap.
     pub gap: f64,
@@ -103,12 +104,16 @@ pub struct ContactForce {
     pub bodies: [BodyId; 2],
     /// The connector whose row this is; `None` for bodies that touch.
     pub connector: Option<ConnectorId>,
-    /// World position [m] at which the force acts on the first body.
-    pub point: DVec2,
-    /// Unit normal, from `bodies[1]` to `bodies[0]`.
+    /// World position [m] at which the force acts on the first body; `None` for a torque, which has no point.
+    pub point: Option<DVec2>,
+    /// Unit normal, from `bodies[1]` to `bodies[0]`; zero for a torque.
     pub normal: DVec2,
-    /// Force on `bodies[0]` along the normal [N], negative only in bilateral connectors; `bodies[1]` gets the opposite.
+    /// Force on `bodies[0]` along the normal [N], negative only in bilateral connectors; `bodies[1]` gets the opposite, but where a
+    /// connector turns forces: the wheel of a rack gets a torque. 0 for a torque.
     pub force: f64,
+    /// Torque on `bodies[0]` [N m], counter-clockwise positive, of a row of a connector that is a torque: of a weld, a slider or a gear, and of
+    /// what acts on the angle of a pin. `bodies[1]` gets the opposite, but in a gear.
+    pub torque: Option<f64>,
     /// Friction, of a contact whose surfaces have some, in an advance by events.
     pub friction: Option<ContactFriction>,
     /// Moment of rolling resistance on `bodies[0]` [N m], counter-clockwise positive, of a contact whose surfaces have some, in an advance by events;

@@ -121,7 +121,7 @@ impl World {
         let _ = self.tell_start(&mut go_on);
         let outcome = act(&mut self.strategy, self.now);
         let outcome = outcome.map(|handled| match handled {
-            Some(handled) => tell(&mut self.told, &self.strategy, handled, &mut go_on),
+            Some(handled) => tell(&mut self.told, (&self.strategy, &self.joints), handled, &mut go_on),
             None => ControlFlow::Continue(()),
         });
         let reached = self.strategy.now();

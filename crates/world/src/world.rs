@@ -301,7 +301,7 @@ impl World {
     /// The forces of all contacts and connectors at the present time.
     #[must_use]
     pub fn contact_forces(&self) -> Vec<ContactForce> {
-        self.strategy.row_forces(self.now).iter().map(contact_force).collect()
+        self.strategy.row_forces(self.now).iter().map(|row| contact_force(row, &self.joints)).collect()
     }
 
     /// True if uniform gravity acts on a body.
@@ -422,13 +422,14 @@ impl World {
     }
 }
 
-pub(crate) fn contact_force(row: &RowForce) -> ContactForce {
+pub(crate) fn contact_force(row: &RowForce, joints: &Joints) -> ContactForce {
     ContactForce {
         bodies: row.bodies,
-        connector: row.connector,
+        connector: row.connector.map(|id| joints.whole(id)),
         point: row.point,
         normal: row.normal,
         force: row.force,
+        torque: row.torque,
         friction: row.friction.map(|RowFriction { force, slip_speed, most, sticks }| ContactFriction {
             force,
             slip_speed,

@@ -35,7 +35,8 @@ fn error(name: &str, step: f64) -> f64 {
 fn closing(contact: &ContactForce, states: &[BodyState]) -> f64 {
     let at = |body: BodyId| {
         states.get(body.index()).map_or(DVec2::ZERO, |state| {
-            state.velocity + state.angular_velocity * (contact.point - state.position).perp()
+            state.velocity
+                + state.angular_velocity * (contact.point.expect("a contact") - state.position).perp()
         })
     };
     contact.normal.dot(at(contact.bodies[1]) - at(contact.bodies[0]))

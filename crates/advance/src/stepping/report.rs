@@ -57,20 +57,9 @@ impl Row {
             }
             Source::Connector { connector, .. } => (Some(ConnectorId(connector)), None),
         };
-        let [x, y, ..] = self.normal.jacobian();
-        RowForce {
-            bodies: self.bodies(bodies.count()),
-            connector,
-            features,
-            point: self.point,
-            normal: DVec2::new(x, y),
-            force,
-            friction: None,
-            rolling: None,
-            heat: None,
-            jump: None,
-            bouncing: None,
-        }
+        let [x, y, turning, ..] = self.normal.jacobian();
+        let place = (self.point, DVec2::new(x, y), turning);
+        RowForce::along(self.bodies(bodies.count()), (connector, features), place, force)
     }
 }
 
@@ -78,19 +67,8 @@ impl Pair {
     /// What callers are told of a contact without a row, which carries a force [N], where it is measured.
     pub(super) fn told(&self, features: [FeatureId; 2], sample: &GapSample, force: f64) -> RowForce {
         let [a, b] = self.bodies;
-        RowForce {
-            bodies: if sample.primary_is_a { [a, b] } else { [b, a] },
-            connector: None,
-            features: Some(features),
-            point: sample.point_primary,
-            normal: sample.normal,
-            force,
-            friction: None,
-            rolling: None,
-            heat: None,
-            jump: None,
-            bouncing: None,
-        }
+        let bodies = if sample.primary_is_a { [a, b] } else { [b, a] };
+        RowForce::along(bodies, (None, Some(features)), (sample.point_primary, sample.normal, 0.0), force)
     }
 }
 
@@ -124,20 +102,10 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
     for (index, (connector, tie)) in tied.filter(|(_, (tie, _))| tie.bodies().into_iter().all(sleeps)) {
         for (direction, &force) in tie.forces.iter().enumerate().filter(|&(_, &force)| force != 0.0) {
             let sample = ties.measure(bodies, index, direction);
-            let [x, y, ..] = sample.kinematics.jacobian;
-            all.push(RowForce {
-                bodies: connector.bodies(),
-                connector: Some(ConnectorId(index as u32)),
-                features: None,
-                point: sample.point_a,
-                normal: DVec2::new(x, y),
-                force,
-                friction: None,
-                rolling: None,
-                heat: None,
-                jump: None,
-                bouncing: None,
-            });
+            let [x, y, turning, ..] = sample.kinematics.jacobian;
+            let place = (sample.point_a, DVec2::new(x, y), turning);
+            let origin = (Some(ConnectorId(index as u32)), None);
+            all.push(RowForce::along(connector.bodies(), origin, place, force));
         }
     }
     all

@@ -106,7 +106,7 @@ pub enum ConnectorKind {
         turn: Turn,
     },
     /// Keeps the displacement of a bar's centre of mass along a direction of the world equal to a radius times the angle by which a
-    /// wheel has turned in the world.
+    /// wheel has turned in the world. Body a is the bar.
     Rack {
         /// The wheel.
         wheel: BodyId,

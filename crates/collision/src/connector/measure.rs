@@ -179,18 +179,17 @@ fn gear_row(ratio: f64, turn: &Turn, [a, b, carrier]: [&Moving; 3], turns: [f64;
     sample
 }
 
-/// The row of a rack. The wheel is pushed at its rim by what pushes the bar.
+/// The row of a rack: a force on the bar at its centre of mass, and a torque on the wheel.
 fn rack_row(
     (radius, axis, at): (f64, DVec2, f64),
-    [wheel, bar]: [&Moving; 2],
+    [bar, wheel]: [&Moving; 2],
     turns: [f64; 2],
 ) -> ConnectorSample {
-    let mut sample = turning_row([-radius, 0.0], [wheel, bar], turns, at);
+    let mut sample = turning_row([0.0, -radius], [bar, wheel], turns, at);
     sample.gap += axis.dot(bar.pose.position);
     sample.kinematics.rate += axis.dot(bar.velocity);
-    [sample.kinematics.jacobian[3], sample.kinematics.jacobian[4]] = axis.to_array();
-    sample.normal = -axis;
-    sample.point_a = wheel.pose.position - axis.perp() * radius;
+    [sample.kinematics.jacobian[0], sample.kinematics.jacobian[1]] = axis.to_array();
+    sample.normal = axis;
     sample
 }
 

@@ -147,7 +147,7 @@ impl Connector {
             | ConnectorKind::Pulley { a, b, .. } => [a.body, b.body],
             ConnectorKind::Rail { a, .. } | ConnectorKind::RailStop { a, .. } => [a.body, BodyId::WORLD],
             ConnectorKind::Gear { a, b, .. } => [*a, *b],
-            ConnectorKind::Rack { wheel, bar, .. } => [*wheel, *bar],
+            ConnectorKind::Rack { wheel, bar, .. } => [*bar, *wheel],
             ConnectorKind::Limit { coordinate, .. }
             | ConnectorKind::Drive { coordinate, .. }
             | ConnectorKind::Pull { coordinate, .. } => coordinate.bodies(),
@@ -305,7 +305,7 @@ impl Connector {
                 let angle = a.angle - *ratio * b.angle + (*ratio - 1.0) * carrier.angle;
                 *turn = Turn { angle, lever };
             }
-            ConnectorKind::Rack { radius, axis, at, .. } => *at = axis.dot(b.position) - *radius * a.angle,
+            ConnectorKind::Rack { radius, axis, at, .. } => *at = axis.dot(a.position) - *radius * b.angle,
             ConnectorKind::Drive { coordinate, law, at } => {
                 *at = coordinate.value([a, b]) - law.at(time).value;
             }

@@ -60,7 +60,8 @@ impl ForceScale {
         for contact in &frame.forces {
             let Some(friction) = contact.friction else { continue };
             let fill = if friction.sticks { COLOR } else { "#ffffff" };
-            svg.circle(view.to_page(contact.point), DOT, &[("fill", fill)]);
+            let Some(point) = contact.point else { continue };
+            svg.circle(view.to_page(point), DOT, &[("fill", fill)]);
         }
         svg.close_group();
     }
@@ -70,7 +71,8 @@ impl ForceScale {
         let arrows = pushes(frame).into_iter().flat_map(move |push| {
             let [primary, normal] = push.contact.bodies;
             [(primary, push.force), (normal, -push.force)].map(|(body, force)| {
-                let arrow = Arrow { from: push.contact.point, along: force * self.pixels_per_newton };
+                let from = push.contact.point?;
+                let arrow = Arrow { from, along: force * self.pixels_per_newton };
                 let drawn = (SHORTEST..=2.0 * LONGEST).contains(&arrow.along.length());
                 (drawn && recording.place(body).is_some()).then_some(arrow)
             })
@@ -111,7 +113,7 @@ fn draw_arrow(svg: &mut Svg, from: (f64, f64), along: DVec2) {
 /// Returns the forces of a frame; the rows of one connector are one force.
 fn pushes(frame: &Frame) -> Vec<Push> {
     let mut pushes: Vec<Push> = Vec::new();
-    for contact in &frame.forces {
+    for contact in frame.forces.iter().filter(|contact| contact.point.is_some()) {
         let friction = contact.friction.map_or(0.0, |friction| friction.force);
         let force = contact.force * contact.normal + friction * contact.normal.perp();
         let same = |push: &&mut Push| {

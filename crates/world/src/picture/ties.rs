@@ -1,12 +1,12 @@
 //! Connectors and springs: rails as curves, their stops as bars across, rods and ropes as lines between their points,
-//! pins as small rings, slots as small rings on a line along which they slide, springs and dashpots as zigzags.
+//! pins as small rings, slots and sliders as small rings on a line along which they slide, welds as crosses, springs and dashpots as zigzags.
 
 use super::svg::{Svg, number};
 use super::view::View;
 use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
-use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, RailPath, SlotFrame};
+use halfgap_collision::{Anchor, BodyId, Connector, ConnectorKind, Coordinate, RailPath, SlotFrame};
 use halfgap_geometry::Aabb;
 use std::fmt::Write;
 
@@ -92,8 +92,21 @@ pub(super) fn draw_ties(svg: &mut Svg, world: &World, recording: &Recording, fra
                 svg.line(a, b, &[LINE[1], LINE[2], ("stroke-dasharray", "6 3")]);
             }
             (ConnectorKind::Pin { .. }, Some(a), _) => svg.circle(a, RING, &LINE),
-            (ConnectorKind::Slot { a: on_a, b: on_b, normal, frame }, Some(a), _) => {
-                let direction = slot_direction([on_a, on_b], *normal, *frame);
+            (ConnectorKind::Weld { .. }, Some((x, y)), _) => {
+                for tilt in [-RING, RING] {
+                    svg.line((x - RING, y - tilt), (x + RING, y + tilt), &LINE[1..]);
+                }
+            }
+            (ConnectorKind::Pulley { wheels, .. }, Some(a), Some(b)) => {
+                let [first, last] = wheels.map(|wheel| view.to_page(wheel));
+                let path = polyline([a, first, last, b].into_iter());
+                svg.path(&path, &[LINE[0], LINE[1], LINE[2], ("stroke-dasharray", "6 3")]);
+            }
+            (ConnectorKind::Slot { .. } | ConnectorKind::Slider { .. }, Some(a), _) => {
+                let Some(Coordinate::Along { a: on_a, b: on_b, axis, frame }) = connector.coordinate() else {
+                    continue;
+                };
+                let direction = slot_direction([&on_a, &on_b], -axis, frame);
                 let [from, to] = direction.map(|anchor| DVec2::from(place_of(&anchor)));
                 let along = (to - from).normalize_or_zero() * SLOT;
                 let [from, to] = [-along, along].map(|way| (a.0 + way.x, a.1 + way.y));
@@ -122,13 +135,13 @@ fn zigzag([a, b]: [(f64, f64); 2]) -> String {
 }
 
 /// Returns two points along the direction in which a slot slides, on the body that carries it.
-fn slot_direction([a, b]: [&Anchor; 2], normal: DVec2, frame: SlotFrame) -> [Anchor; 2] {
+fn slot_direction([a, b]: [&Anchor; 2], axis: DVec2, frame: SlotFrame) -> [Anchor; 2] {
     let carrier = match frame {
         SlotFrame::A => *a,
         SlotFrame::B => *b,
         SlotFrame::World => Anchor { body: BodyId::WORLD, point: DVec2::ZERO },
     };
-    [carrier, Anchor { point: carrier.point + normal.perp(), ..carrier }]
+    [carrier, Anchor { point: carrier.point + axis, ..carrier }]
 }
 
 /// Returns the world position of an anchor in a frame [m]; without a frame, at the present state of the world.

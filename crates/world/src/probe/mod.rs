@@ -10,7 +10,7 @@ pub use table::ProbeTable;
 use crate::recording::{Frame, Recording};
 use crate::world::World;
 use glam::DVec2;
-use halfgap_collision::{Anchor, BodyId, Connector, ConnectorId, ConnectorKind, Moving, SlotFrame};
+use halfgap_collision::{Anchor, BodyId, Connector, ConnectorId, Coordinate, Moving};
 
 /// A quantity to be read from a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +30,9 @@ pub enum ProbeKind {
     Angle([BodyId; 2]),
     /// Distance of two points [m], and its rate [m/s].
     Distance([Anchor; 2]),
-    /// Force [N] of a connector on its body a, torque [N m] of that force about the connector's point of a, and free coordinate: of a pin
-    /// the angle of b less that of a [rad], of a slot the displacement of b along its normal turned by -90 degrees [m].
+    /// Force [N] and torque [N m] of a connector and all that acts on its free coordinate on its body a (of a rack the bar), the torque about the
+    /// connector's point of a, and the free coordinate: of a pin the angle of b less that of a [rad], of a slider the displacement of b along the
+    /// axis, of a slot that along its normal turned by -90 degrees [m].
     Connector(ConnectorId),
     /// Sum of the contact forces of the second body on the first [N], friction included.
     Contact([BodyId; 2]),
@@ -50,10 +51,14 @@ impl Probe {
             ProbeKind::Distance(_) => vec![("distance", "m"), ("rate", "m/s")],
             ProbeKind::Connector(id) => {
                 let mut quantities = vec![("fx", "N"), ("fy", "N"), ("torque", "N m")];
-                match world.connectors()[id.index()].kind {
-                    ConnectorKind::Pin { .. } => quantities.extend([("angle", "rad"), ("rate", "rad/s")]),
-                    ConnectorKind::Slot { .. } => quantities.extend([("coordinate", "m"), ("rate", "m/s")]),
-                    _ => (),
+                match world.connectors()[id.index()].coordinate() {
+                    Some(Coordinate::Angle { .. }) => {
+                        quantities.extend([("angle", "rad"), ("rate", "rad/s")])
+                    }
+                    Some(Coordinate::Along { .. }) => {
+                        quantities.extend([("coordinate", "m"), ("rate", "m/s")]);
+                    }
+                    None => (),
                 }
                 quantities
             }
@@ -84,7 +89,8 @@ impl Probe {
                 let (mut force, mut torque) = (DVec2::ZERO, 0.0);
                 for row in frame.forces.iter().filter(|row| row.connector == Some(*id)) {
                     force += row.force * row.normal;
-                    torque += (row.point - point).perp_dot(row.force * row.normal);
+                    let arm = row.point.map_or(DVec2::ZERO, |at| at - point);
+                    torque += arm.perp_dot(row.force * row.normal) + row.torque.unwrap_or(0.0);
                 }
                 values.extend([force.x, force.y, torque]);
                 values.extend(coordinate(connector, connector.bodies().map(moving)).into_iter().flatten());
@@ -128,20 +134,6 @@ fn turn([a, b]: [Moving; 2]) -> [f64; 2] {
 
 /// Free coordinate of a connector and its rate; `None` if it has none.
 fn coordinate(connector: &Connector, [a, b]: [Moving; 2]) -> Option<[f64; 2]> {
-    match &connector.kind {
-        ConnectorKind::Pin { .. } => Some(turn([a, b])),
-        ConnectorKind::Slot { a: on_a, b: on_b, normal, frame } => {
-            let carrier = match frame {
-                SlotFrame::A => a,
-                SlotFrame::B => b,
-                SlotFrame::World => Moving::BACKGROUND,
-            };
-            let along = -carrier.pose.vector_to_world(*normal).perp();
-            let [from, to] = [place(on_a, &a), place(on_b, &b)];
-            let (offset, rate) = (to.0 - from.0, to.1 - from.1);
-            let turning = carrier.angular_velocity * along.perp().dot(offset);
-            Some([along.dot(offset), along.dot(rate) + turning])
-        }
-        _ => None,
-    }
+    let row = connector.coordinate()?.measure([&a, &b]);
+    Some([row.gap, row.kinematics.rate])
 }

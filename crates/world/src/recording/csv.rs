@@ -44,7 +44,8 @@ impl Recording {
             for row in &impact.rows {
                 let (primary, normal) =
                     (csv_field(self.name(row.primary)), csv_field(self.name(row.normal_body)));
-                let place = numbers([row.point.x, row.point.y, row.normal.x, row.normal.y, row.gap]);
+                let point = row.point.map_or_else(|| ",".to_owned(), |point| numbers([point.x, point.y]));
+                let place = format!("{point},{}", numbers([row.normal.x, row.normal.y, row.gap]));
                 let blow = numbers([row.velocity_before, row.velocity_after, row.impulse]);
                 let connector = row.connector.map(|id| id.0.to_string()).unwrap_or_default();
                 write!(out, "{index},{:?},{primary},{normal},{place},{blow},", impact.time)?;
@@ -92,9 +93,10 @@ impl Recording {
     fn write_force(&self, out: &mut dyn Write, force: &ContactForce, further: Further) -> io::Result<()> {
         let [primary, normal] = force.bodies.map(|body| csv_field(self.name(body)));
         let connector = force.connector.map(|id| id.0.to_string()).unwrap_or_default();
-        let (point, direction) = (force.point, force.normal);
-        let told = numbers([point.x, point.y, direction.x, direction.y, force.force]);
-        write!(out, "{primary},{normal},{connector},{told}")?;
+        let point = force.point.map_or_else(|| ",".to_owned(), |point| numbers([point.x, point.y]));
+        let told = numbers([force.normal.x, force.normal.y, force.force]);
+        write!(out, "{primary},{normal},{connector},{point},{told}")?;
+        write_number(out, force.torque, further.torque)?;
         match force.friction {
             Some(friction) => {
                 let told = numbers([friction.force, friction.slip_speed, friction.cone_use()]);
@@ -122,9 +124,10 @@ impl Recording {
     }
 }
 
-/// Further columns of forces: where any contact has friction, where any resists rolling, and where any is told its heat.
+/// Further columns of forces: where any row is a torque, where any contact has friction, where any resists rolling, and where any is told its heat.
 #[derive(Clone, Copy, Debug, Default)]
 struct Further {
+    torque: bool,
     friction: bool,
     rolling: bool,
     heat: bool,
@@ -133,6 +136,7 @@ struct Further {
 impl Further {
     fn of<'a>(forces: impl Iterator<Item = &'a ContactForce>) -> Self {
         forces.fold(Self::default(), |further, force| Self {
+            torque: further.torque || force.torque.is_some(),
             friction: further.friction || force.friction.is_some(),
             rolling: further.rolling || force.rolling_moment.is_some(),
             heat: further.heat || force.heat.is_some(),
@@ -140,10 +144,11 @@ impl Further {
     }
 
     fn header(self) -> String {
+        let torque = if self.torque { ",torque [N m]" } else { "" };
         let friction = if self.friction { ",mode,friction_force [N],slip_speed [m/s],cone_use" } else { "" };
         let rolling = if self.rolling { ",rolling_moment [N m]" } else { "" };
         let heat = if self.heat { ",heat [J]" } else { "" };
-        format!("{friction}{rolling}{heat}")
+        format!("{torque}{friction}{rolling}{heat}")
     }
 }
 

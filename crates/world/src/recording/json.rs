@@ -42,9 +42,11 @@ struct ForceJson<'a> {
     primary: &'a str,
     normal_body: &'a str,
     connector: Option<u32>,
-    point: [f64; 2],
+    point: Option<[f64; 2]>,
     normal: [f64; 2],
     force: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    torque: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     friction: Option<FrictionJson>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,7 +86,7 @@ struct RowJson<'a> {
     normal_body: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     connector: Option<u32>,
-    point: [f64; 2],
+    point: Option<[f64; 2]>,
     normal: [f64; 2],
     gap: f64,
     velocity_before: f64,
@@ -124,7 +126,7 @@ impl Recording {
             primary: self.name(row.primary),
             normal_body: self.name(row.normal_body),
             connector: row.connector.map(|id| id.0),
-            point: row.point.to_array(),
+            point: row.point.map(|point| point.to_array()),
             normal: row.normal.to_array(),
             gap: row.gap,
             velocity_before: row.velocity_before,
@@ -139,9 +141,10 @@ impl Recording {
             primary,
             normal_body,
             connector: force.connector.map(|id| id.0),
-            point: force.point.to_array(),
+            point: force.point.map(|point| point.to_array()),
             normal: force.normal.to_array(),
             force: force.force,
+            torque: force.torque,
             friction: force.friction.map(|friction| FrictionJson {
                 mode: friction.mode(),
                 force: friction.force,

@@ -160,7 +160,7 @@ fn impact(time: f64, impulse: f64) -> Impact {
         primary: BodyId(1),
         normal_body: BodyId(0),
         connector: None,
-        point: glam::DVec2::X,
+        point: Some(glam::DVec2::X),
         normal: glam::DVec2::NEG_X,
         gap: 0.01,
         velocity_before: -1.0,
@@ -227,7 +227,8 @@ fn contact(connector: Option<u32>, normal: glam::DVec2, force: f64) -> ContactFo
     ContactForce {
         bodies: [BodyId(1), normal_body],
         connector,
-        point: glam::DVec2::NEG_Y,
+        point: Some(glam::DVec2::NEG_Y),
+        torque: None,
         normal,
         force,
         friction: None,

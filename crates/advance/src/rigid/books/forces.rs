@@ -24,8 +24,13 @@ pub(crate) fn row_forces(
     time: Time,
 ) -> Vec<RowForce> {
     let mut found = Vec::new();
-    let groups_with_rows =
-        || groups.by_leader().iter().flatten().filter(|group| group.rows().len() + group.spares().len() > 0);
+    let groups_with_rows = || {
+        groups
+            .by_leader()
+            .iter()
+            .flatten()
+            .filter(|group| group.rows().len() + group.spares().len() + group.pulls().len() > 0)
+    };
     if groups_with_rows().next().is_none() {
         return found;
     }
@@ -38,6 +43,12 @@ pub(crate) fn row_forces(
         let first = found.len();
         found.extend(told_rows(assembly, connectors, &group, (stage.forces(), stage.movings())));
         tell_heat(books, &group, time, &mut found[first..]);
+        let mechanism = mechanism(assembly, connectors);
+        found.extend(group.pulls().iter().map(|pull| {
+            let sides = pull.bodies.map(|body| moving_of(stage.movings(), body));
+            let place = mechanism.locate_pull(pull.id, sides);
+            RowForce::along(pull.bodies, (Some(pull.id), None), place, pull.force)
+        }));
     }
     found
 }
@@ -117,24 +128,12 @@ fn told_rows<'a>(
             _ => 0.0,
         };
         let rolling = mechanism.told_rolling(row, force, turning);
-        let (point, normal) = mechanism.locate(row, movings);
-        let (connector, features) = match row.source {
+        let origin = match row.source {
             RowSource::Connector(id, _) | RowSource::Pull(id) => (Some(id), None),
             RowSource::Contact(features) | RowSource::Anchor(features) => (None, Some(features)),
         };
-        RowForce {
-            bodies: row.bodies,
-            connector,
-            features,
-            point,
-            normal,
-            force,
-            friction,
-            rolling,
-            heat: None,
-            jump: None,
-            bouncing: None,
-        }
+        let place = mechanism.locate(row, movings);
+        RowForce { friction, rolling, ..RowForce::along(row.bodies, origin, place, force) }
     })
 }
 

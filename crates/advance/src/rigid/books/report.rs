@@ -17,12 +17,14 @@ pub struct RowForce {
     pub connector: Option<ConnectorId>,
     /// The features that touch; `None` in a connector.
     pub features: Option<[FeatureId; 2]>,
-    /// Point of the primary body at which the force acts, in world coordinates [m].
-    pub point: DVec2,
-    /// Unit normal in world directions, from the normal to the primary body.
+    /// Point of the primary body at which the force acts, in world coordinates [m]; `None` for a row that is a torque.
+    pub point: Option<DVec2>,
+    /// Unit normal in world directions, from the normal to the primary body; zero for a row that is a torque.
     pub normal: DVec2,
-    /// Force on the primary body along the normal [N]: positive pushes the bodies apart.
+    /// Force on the primary body along the normal [N]: positive pushes the bodies apart. 0 for a row that is a torque.
     pub force: f64,
+    /// Torque on the primary body [N m], counter-clockwise positive, of a row that is a torque.
+    pub torque: Option<f64>,
     /// Friction at a contact whose surfaces have some.
     pub friction: Option<RowFriction>,
     /// Rolling resistance at a contact whose surfaces have some.
@@ -37,6 +39,31 @@ pub struct RowForce {
 }
 
 impl RowForce {
+    /// A force [N] along a row whose point and normal are given, with the coefficient [m] of the primary body's rotation: a row without
+    /// a normal is a torque. Nothing else is told yet.
+    pub(crate) fn along(
+        bodies: [BodyId; 2],
+        origin: (Option<ConnectorId>, Option<[FeatureId; 2]>),
+        (point, normal, turning): (DVec2, DVec2, f64),
+        force: f64,
+    ) -> Self {
+        let is_torque = normal == DVec2::ZERO;
+        Self {
+            bodies,
+            connector: origin.0,
+            features: origin.1,
+            point: (!is_torque).then_some(point),
+            normal,
+            force: if is_torque { 0.0 } else { force },
+            torque: is_torque.then_some(turning * force),
+            friction: None,
+            rolling: None,
+            heat: None,
+            jump: None,
+            bouncing: None,
+        }
+    }
+
     fn is_same(&self, other: &RowForce) -> bool {
         self.bodies == other.bodies && self.connector == other.connector && self.features == other.features
     }
@@ -237,19 +264,7 @@ mod tests {
     use super::*;
 
     fn of(body: u32) -> RowForce {
-        RowForce {
-            bodies: [BodyId(0), BodyId(body)],
-            connector: None,
-            features: None,
-            point: DVec2::ZERO,
-            normal: DVec2::Y,
-            force: 1.0,
-            friction: None,
-            rolling: None,
-            heat: None,
-            jump: None,
-            bouncing: None,
-        }
+        RowForce::along([BodyId(0), BodyId(body)], (None, None), (DVec2::ZERO, DVec2::Y, 0.0), 1.0)
     }
 
     #[test]

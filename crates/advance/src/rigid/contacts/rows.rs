@@ -237,27 +237,28 @@ impl Mechanism<'_> {
         !row.bilateral && self.connectors[id.index()].is_bilateral()
     }
 
-    /// Point [m] in the world at which a row's force acts on its primary body, and the normal.
-    pub(crate) fn locate(&self, row: &ActiveRow, movings: &[Moving]) -> (DVec2, DVec2) {
-        self.locate_between(row, row.bodies.map(|body| moving_of(movings, body)))
-    }
-
-    /// The same with the two bodies moving like this.
-    pub(crate) fn locate_between(&self, row: &ActiveRow, [a, b]: [&Moving; 2]) -> (DVec2, DVec2) {
+    /// Point [m] in the world at which a row's force acts on its primary body, the normal, and the coefficient [m] of the
+    /// body's rotation.
+    pub(crate) fn locate(&self, row: &ActiveRow, movings: &[Moving]) -> (DVec2, DVec2, f64) {
+        let sides = row.bodies.map(|body| moving_of(movings, body));
         match row.source {
             RowSource::Connector(id, index) => {
-                let sample = self.measure_connector((id, index), [a, b], None, row.hint.as_ref());
-                (sample.point_a, sample.normal)
+                let sample = self.measure_connector((id, index), sides, None, row.hint.as_ref());
+                (sample.point_a, sample.normal, sample.kinematics.jacobian[2])
             }
-            RowSource::Pull(id) => {
-                let sample = self.measure_connector((id, 0), [a, b], None, None);
-                (sample.point_a, sample.normal)
-            }
+            RowSource::Pull(id) => self.locate_pull(id, sides),
             RowSource::Contact(features) | RowSource::Anchor(features) => {
-                let sample = self.sample(row.bodies, features, [a, b]);
-                (sample.point_primary, sample.normal)
+                let sample = self.sample(row.bodies, features, sides);
+                let arm = sample.point_primary - sides[0].pose.position;
+                (sample.point_primary, sample.normal, arm.perp_dot(sample.normal))
             }
         }
+    }
+
+    /// The same for the coordinate of a motor or of dry friction in a joint.
+    pub(crate) fn locate_pull(&self, id: ConnectorId, sides: [&Moving; 2]) -> (DVec2, DVec2, f64) {
+        let sample = self.measure_connector((id, 0), sides, None, None);
+        (sample.point_a, sample.normal, sample.kinematics.jacobian[2])
     }
 
     /// Distance [m] by which a contact may run off its features before it counts as changed.

@@ -65,17 +65,8 @@ fn told_of(mechanism: &Mechanism<'_>, record: &Collision, row: &ActiveRow) -> Ro
 pub(super) fn told_record(record: &Collision) -> RowForce {
     let sides = [&record.parties.primary, &record.parties.normal].map(|side| side.feature());
     let features = if let [Some(primary), Some(normal)] = sides { Some([primary, normal]) } else { None };
-    RowForce {
-        bodies: record.bodies(),
-        connector: record.connector(),
-        features,
-        point: record.geometry.point_primary,
-        normal: record.geometry.normal,
-        force: record.response.force.unwrap_or(0.0),
-        friction: None,
-        rolling: None,
-        heat: None,
-        jump: None,
-        bouncing: None,
-    }
+    let (geometry, turning) = (&record.geometry, record.motion.kinematics.jacobian[2]);
+    let place = (geometry.point_primary, geometry.normal, turning);
+    let force = record.response.force.unwrap_or(0.0);
+    RowForce::along(record.bodies(), (record.connector(), features), place, force)
 }
