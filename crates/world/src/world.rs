@@ -8,7 +8,7 @@ use crate::strategy::Strategy;
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{Ledger as Booked, RemedyCounts, RigidSettings, RowForce, RowFriction};
-use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Tolerances};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, Surroundings, Tolerances};
 use halfgap_geometry::Shape;
 use std::sync::Arc;
 
@@ -334,7 +334,11 @@ impl World {
             if body.is_world() { Moving::BACKGROUND } else { Moving::from(&self.state(body)) }
         };
         let [a, b] = connector.bodies().map(moving);
-        connector.error(&a, &b, hint.as_ref())
+        let carrier = connector.third().map_or(Moving::BACKGROUND, |(body, _)| moving(body));
+        let hint = hint.as_ref();
+        let surroundings =
+            Surroundings { time: self.time(), hint, carrier: &carrier, ..Surroundings::default() };
+        connector.error_in([&a, &b], &surroundings)
     }
 
     /// Thresholds of touching, given or derived from the tolerance.

@@ -4,7 +4,7 @@ use super::moving;
 use crate::world::Named;
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_advance::rigid::BodyPart;
-use halfgap_collision::{BodyId, Connector, ConnectorSample};
+use halfgap_collision::{BodyId, Connector, ConnectorSample, Moving, Surroundings};
 
 /// A connector and its error.
 #[derive(Clone, Copy, Debug)]
@@ -52,19 +52,28 @@ pub(super) fn worst_connector(bodies: &[BodyPart], connectors: &[Connector]) -> 
 
 fn error_of(bodies: &[BodyPart], connector: &Connector) -> f64 {
     let [a, b] = connector.bodies().map(|body| moving(bodies, body));
-    connector.error(&a, &b, None)
+    let carrier = carrier_of(bodies, connector);
+    connector.error_in([&a, &b], &Surroundings { carrier: &carrier, ..Surroundings::default() })
 }
 
-/// Every row of every connector that ties a movable body, with the connector's index.
+/// Every row of every connector that ties or is carried by a movable body, with the connector's index.
 pub(super) fn rows<'a>(
     bodies: &'a [BodyPart],
     connectors: &'a [Connector],
 ) -> impl Iterator<Item = (usize, &'a Connector, ConnectorSample)> {
     let is_fixed = |body: BodyId| body.is_world() || bodies[body.index()].body.is_fixed();
-    let movable =
-        connectors.iter().enumerate().filter(move |(_, one)| !one.bodies().into_iter().all(is_fixed));
+    let movable = connectors.iter().enumerate().filter(move |(_, one)| !one.all_bodies().all(is_fixed));
     movable.flat_map(|(index, connector)| {
         let [a, b] = connector.bodies().map(|body| moving(bodies, body));
-        (0..connector.row_count()).map(move |row| (index, connector, connector.measure(row, &a, &b)))
+        let carrier = carrier_of(bodies, connector);
+        (0..connector.row_count()).map(move |row| {
+            let surroundings = Surroundings { carrier: &carrier, ..Surroundings::default() };
+            (index, connector, connector.measure_in(row, [&a, &b], &surroundings))
+        })
     })
+}
+
+/// The motion of the third body of a connector, if it has one.
+fn carrier_of(bodies: &[BodyPart], connector: &Connector) -> Moving {
+    connector.third().map_or(Moving::BACKGROUND, |(body, _)| moving(bodies, body))
 }

@@ -289,6 +289,13 @@ impl Settling {
             push(index, &region.records()[index].motion.kinematics.jacobian, force);
         }
         for_each_push(self, |place, j, force| push(records[place], j, force));
+        for (&index, &force) in records.iter().zip(&self.solution.force) {
+            if let Some((body, j)) = region.records()[index].parties.third
+                && let Some(place) = region.place(body)
+            {
+                sums[place][2] += inertia(body).inverse_moment * j * force;
+            }
+        }
     }
 }
 
