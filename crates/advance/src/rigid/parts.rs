@@ -154,7 +154,7 @@ impl RigidParts {
         let count = self.bodies.len();
         let check = |part, index, body| check_named(part, index, body, count);
         for (index, connector) in self.connectors.iter().enumerate() {
-            connector.bodies().into_iter().try_for_each(|body| check("connector", index, body))?;
+            connector.all_bodies().try_for_each(|body| check("connector", index, body))?;
         }
         for (index, law) in self.force_laws.iter().enumerate() {
             check_bodies_of_force_law(index, law.as_ref(), count)?;

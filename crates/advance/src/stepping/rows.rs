@@ -1,6 +1,7 @@
 //! The rows of a step: what contacts and connectors ask of the velocities with which bodies go through it.
 //!
-//! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it.
+//! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it. Few rows
+//! act on the rotation of a third.
 
 use crate::stepping::bodies::Motion3;
 use glam::DVec2;
@@ -58,6 +59,13 @@ impl Line {
             + (p.inverse_moment * a * a + q.inverse_moment * b * b);
         let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
         Self { x, y, a, b, compliance, weight, offset, ..Self::default() }
+    }
+
+    /// The same where a third body takes part, too, with its square [1/kg].
+    pub(super) fn with_square(self, square: f64) -> Self {
+        let compliance = self.compliance + square;
+        let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
+        Self { compliance, weight, ..self }
     }
 
     /// True if there is such a row.
@@ -122,6 +130,31 @@ impl Line {
     }
 }
 
+/// The third side of a row: the rotation of one more body.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Third {
+    /// Place of the body.
+    pub(super) place: u32,
+    /// Coefficient of its angular velocity [m].
+    pub(super) arm: f64,
+}
+
+impl Third {
+    /// Its part of the rate [m/s].
+    #[inline]
+    pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
+        self.arm * velocities[self.place as usize][2]
+    }
+
+    /// Adds what an impulse changes to the velocities.
+    #[inline]
+    pub(super) fn push(&self, movers: &mut [Mover], impulse: f64) {
+        let mover = &mut movers[self.place as usize];
+        mover.velocity[2] += mover.inverse_moment * self.arm * impulse;
+    }
+}
+
 /// Where a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -178,6 +211,7 @@ pub(super) struct Lengths {
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Row {
     pub(super) places: [u32; 2],
+    pub(super) third: Option<Third>,
     /// The rate may neither be negative nor positive.
     pub(super) is_bilateral: bool,
     /// It carried a force in the last step.
@@ -210,7 +244,13 @@ impl Row {
         self.places.map(|place| place as usize)
     }
 
-    /// Its bodies, among so many.
+    /// The places of all bodies on which it acts.
+    #[inline(always)]
+    pub(super) fn all_ends(&self) -> impl Iterator<Item = usize> + use<> {
+        self.ends().into_iter().chain(self.third.map(|third| third.place as usize))
+    }
+
+    /// Its two bodies, among so many.
     pub(super) fn bodies(&self, count: usize) -> [BodyId; 2] {
         self.places.map(|place| if place as usize == count { BodyId::WORLD } else { BodyId(place) })
     }
@@ -225,7 +265,28 @@ impl Row {
     #[inline]
     pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
         let [a, b] = self.ends();
-        self.normal.rate(&velocities[a], &velocities[b])
+        let of_two = self.normal.rate(&velocities[a], &velocities[b]);
+        self.third.map_or(of_two, |third| of_two + third.rate(velocities))
+    }
+
+    /// J v [m/s] along the normal of velocities that are looked for.
+    #[inline]
+    pub(super) fn rate_of(&self, movers: &[Mover]) -> f64 {
+        let [p, q] = self.ends().map(|place| &movers[place].velocity);
+        let of_two = self.normal.rate(p, q);
+        self.third.map_or(of_two, |third| of_two + third.arm * movers[third.place as usize].velocity[2])
+    }
+
+    /// Adds what an impulse along the normal changes to the velocities.
+    #[inline]
+    pub(super) fn push(&self, movers: &mut [Mover], impulse: f64) {
+        let [a, b] = self.ends();
+        let (mut p, mut q) = (movers[a], movers[b]);
+        self.normal.push(&mut p, &mut q, impulse);
+        (movers[a], movers[b]) = (p, q);
+        if let Some(third) = &self.third {
+            third.push(movers, impulse);
+        }
     }
 
     /// J v [m/s] along the normal, or the speed of the impact against it if that is more.
@@ -260,6 +321,9 @@ impl Row {
             self.slip.line.push(&mut p, &mut q, self.slip.line.impulse);
         }
         (movers[a], movers[b]) = (p, q);
+        if let Some(third) = &self.third {
+            third.push(movers, self.normal.impulse);
+        }
     }
 }
 

@@ -55,7 +55,8 @@ impl WorldBuilder {
             check_flight(body, law)?;
         }
         for (index, spec) in self.connectors.iter().enumerate() {
-            self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
+            let named: Vec<_> = spec.connector.all_bodies().collect();
+            self.check_bodies(&named, || format!("connector {index}"))?;
             let bad = |source| WorldError::BadConnector { connector: self.connector_name(index), source };
             spec.connector.check().map_err(bad)?;
             self.require_near(index, &spec.connector, LARGEST)?;

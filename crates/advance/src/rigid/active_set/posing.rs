@@ -94,7 +94,11 @@ fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
 pub(super) fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
     let [a, b] = accelerations_of_sides(region, record.bodies(), accelerations);
-    record.motion.kinematics.acceleration(&a, &b)
+    let of_two = record.motion.kinematics.acceleration(&a, &b);
+    match record.parties.third.and_then(|(body, j)| Some((region.place(body)?, j))) {
+        Some((place, j)) => of_two + j * accelerations[place][2],
+        None => of_two,
+    }
 }
 
 fn accelerations_of_sides(

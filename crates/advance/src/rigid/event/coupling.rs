@@ -53,7 +53,7 @@ pub(crate) fn couple(
     let count = region.bodies().len();
     coupling.reset(count);
     for (_, row) in settling.active() {
-        coupling.join(row.bodies.iter().filter_map(|&body| region.place(body)));
+        coupling.join(row.all_bodies().filter_map(|body| region.place(body)));
     }
     let held = settling.held().iter().map(|row| row.bodies);
     for bodies in held.chain(settling.pulled().iter().map(|pull| pull.bodies)) {

@@ -83,7 +83,9 @@ impl Dynamics<'_> {
 
     /// True if a single row holds the group: two bodies, or one against the background.
     fn has_a_single_row(&self) -> bool {
-        matches!(self.group.sides.as_slice(), [[a, b]] if a != b) && !self.group.active.is_soft()
+        matches!(self.group.sides.as_slice(), [[a, b]] if a != b)
+            && self.group.thirds.is_empty()
+            && !self.group.active.is_soft()
     }
 
     /// Adds the response to the only row to the accelerations: many groups have just one, and need no factorisation.
@@ -156,6 +158,7 @@ impl Dynamics<'_> {
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             }
         }
+        self.stage.take_thirds(&self.group.thirds);
         self.push_as_prescribed();
         if self.has_a_single_row() {
             self.accelerate_by_row();

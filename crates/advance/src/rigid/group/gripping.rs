@@ -168,6 +168,10 @@ enum Bears {
 impl ActiveRow {
     /// What the row bears, if it can be one of a lock: a joint, a contact that does not slip, or an anchor.
     fn bears(&self) -> Option<Bears> {
+        if self.third.is_some() {
+            // It lets its two bodies move together with the third.
+            return None;
+        }
         match (self.source, self.grips[0]) {
             (RowSource::Pull(_), _) => None,
             (RowSource::Connector(..), _) => self.is_joint().then_some(Bears::Anything),

@@ -41,8 +41,9 @@ impl Dynamics<'_> {
         loops.clear();
         if settings.projection && self.physics.extra.is_none() && settings.method.is_adaptive() {
             self.find_tree_for(settings.steps.local_error * settings.steps.length);
-            let Group { loops, bodies, rows, sides, .. } = &mut *self.group;
+            let Group { loops, bodies, rows, sides, thirds, .. } = &mut *self.group;
             loops.find(bodies.len(), rows, sides);
+            loops.join_thirds(bodies.len(), sides, thirds);
         }
     }
 
