@@ -53,7 +53,7 @@ pub(super) fn pose_problem(
     let mut turns = slips.iter().filter_map(|slip| Some((slip.place, slip.turn()?))).peekable();
     for (place, &index) in candidates.iter().enumerate() {
         let record = &region.records()[index];
-        let offset = sound(record, free_offset(region, record, stage));
+        let offset = sound(record, free_offset(assembly, region, record, stage));
         let mut turn = turns.next_if(|(turned, _)| *turned == place).map(|(_, turn)| turn);
         // It may slip along both axes.
         while let Some((_, more)) = turns.next_if(|(turned, _)| *turned == place) {
@@ -68,7 +68,7 @@ pub(super) fn pose_problem(
     }
     for slip in slips.iter_mut().filter(|slip| slip.side.is_none()) {
         let record = &region.records()[candidates[slip.place]];
-        let [a, b] = accelerations_of_sides(region, record, stage.accelerations());
+        let [a, b] = accelerations_of_sides(region, record, (assembly, stage.accelerations()));
         let offset = sound(record, slip.row.acceleration(&a, &b));
         let Some(row) = region.row_along(record, &slip.row.jacobian, offset) else { continue };
         let row = row.friction(slip.place, slip.bound(*jumps, *slack));
@@ -77,25 +77,29 @@ pub(super) fn pose_problem(
 }
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
-fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    offset_under(region, record, stage.accelerations())
+fn free_offset(assembly: &Assembly, region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    offset_under(assembly, region, record, stage.accelerations())
 }
 
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
-pub(super) fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
-    let [a, b] = accelerations_of_sides(region, record, accelerations);
+pub(super) fn offset_under(
+    assembly: &Assembly,
+    region: &Region,
+    record: &Collision,
+    accelerations: &[[f64; 3]],
+) -> f64 {
+    let [a, b] = accelerations_of_sides(region, record, (assembly, accelerations));
     record.motion.kinematics.acceleration(&a, &b)
 }
 
 fn accelerations_of_sides(
     region: &Region,
     record: &Collision,
-    accelerations: &[[f64; 3]],
+    (assembly, accelerations): (&Assembly, &[[f64; 3]]),
 ) -> [BodyAcceleration; 2] {
-    record.bodies().map(|body| {
-        region
-            .place(body)
-            .map_or(BodyAcceleration::default(), |place| body_acceleration(accelerations[place]))
+    record.bodies().map(|body| match region.place(body) {
+        Some(place) => body_acceleration(accelerations[place]),
+        None => assembly.prescribed_acceleration(body),
     })
 }
 

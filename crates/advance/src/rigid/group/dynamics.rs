@@ -156,6 +156,7 @@ impl Dynamics<'_> {
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             }
         }
+        self.follow_moved();
         self.push_as_prescribed();
         if self.has_a_single_row() {
             self.accelerate_by_row();
@@ -233,10 +234,10 @@ impl Dynamics<'_> {
         }
         if !self.group.rows.is_empty() {
             constrain(self);
-            if matches!(self.group.works.last(), Some(Work::Friction(_) | Work::Surfaces | Work::Drives)) {
-                self.note_friction_powers(powers);
-                self.note_driving_power(powers);
-            }
+        }
+        if matches!(self.group.works.last(), Some(Work::Friction(_) | Work::Surfaces | Work::Drives)) {
+            self.note_friction_powers(powers);
+            self.note_driving_power(powers);
         }
         let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;
         position_rates.as_chunks_mut::<3>().0.copy_from_slice(velocities);

@@ -92,9 +92,29 @@ impl Group {
         if self.bodies.iter().any(|&body| assembly.trajectory(body).free_motion().is_damped()) {
             self.works.push(Work::Damping);
         }
-        if self.rows.iter().any(|row| row.is_driven(connectors.all())) {
+        self.list_moved(assembly, connectors);
+        if !self.moved.is_empty() || self.rows.iter().any(|row| row.is_driven(connectors.all())) {
             self.works.push(Work::Drives);
         }
+    }
+
+    /// Lists the moved bodies on which its motion depends.
+    fn list_moved(&mut self, assembly: &Assembly, connectors: &Connectors) {
+        if !assembly.any_moved() {
+            return;
+        }
+        let of_rows = self.rows.iter().chain(&self.idle).flat_map(|row| row.bodies);
+        let tied = self.bodies.iter().flat_map(|&body| connectors.of(body));
+        let of_connectors = tied.flat_map(|&id| {
+            let connector = connectors.connector(id);
+            connector.bodies().into_iter().chain(connector.third().map(|(body, _)| body))
+        });
+        let of_laws =
+            self.force_laws.iter().flat_map(|&law| assembly.force_laws().all[law].bodies()).copied();
+        let all = of_rows.chain(of_connectors).chain(of_laws);
+        self.moved.extend(all.filter(|&body| assembly.is_moved(body)));
+        self.moved.sort_unstable();
+        self.moved.dedup();
     }
 
     /// Chooses its first step, and whether its steps are brief, by the last groups of its bodies.
