@@ -34,14 +34,6 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
-    /// A body has what only steps simulate so far: if it is fixed, a motion.
-    #[error("body \"{body}\": events do not simulate its {quantity} yet: advance by steps")]
-    NeedsSteps {
-        /// Name of the body.
-        body: String,
-        /// What only steps simulate.
-        quantity: &'static str,
-    },
     /// A body has friction where contacts carry impulses only, or where their errors are not projected.
     #[error(
         "body \"{body}\": friction needs contacts that carry forces and are projected: leave `contacts` and `stabilization` as they are, or \

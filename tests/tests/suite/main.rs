@@ -12,6 +12,7 @@ mod impacts;
 mod laws;
 mod mechanisms;
 mod mirror;
+mod moved;
 mod pairs;
 mod parser_fuzz;
 mod passing;

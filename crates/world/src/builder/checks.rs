@@ -24,14 +24,6 @@ const BACK_TO_BACK: f64 = 2e-3;
 /// Point, path, place [m] and side of a rail's stop.
 type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
-/// Refuses what only steps simulate so far.
-fn require_events(body: &BodySpec) -> Result<(), WorldError> {
-    if body.motion.is_some() {
-        return Err(WorldError::NeedsSteps { body: body.name.clone(), quantity: "motion" });
-    }
-    Ok(())
-}
-
 impl WorldBuilder {
     /// Checks names, numbers and references to bodies, in the order in which they were added.
     pub(super) fn check(&self) -> Result<(), WorldError> {
@@ -44,11 +36,9 @@ impl WorldBuilder {
                 return Err(WorldError::BadName { name: body.name.clone() });
             }
             check_body(body)?;
-            if self.settings.strategy == AdvanceBy::Events {
-                require_events(body)?;
-                if body.surface.resists() && !self.projects() {
-                    return Err(WorldError::FrictionWithoutForces { body: body.name.clone() });
-                }
+            let is_by_events = self.settings.strategy == AdvanceBy::Events;
+            if is_by_events && body.surface.resists() && !self.projects() {
+                return Err(WorldError::FrictionWithoutForces { body: body.name.clone() });
             }
         }
         for (body, law) in self.bodies.iter().zip(&self.free_motions) {
@@ -292,6 +282,9 @@ fn check_body(body: &BodySpec) -> Result<(), WorldError> {
     ];
     if let Some((quantity, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
         return bad(quantity, "finite", value);
+    }
+    if body.motion.as_ref().is_some_and(|motion| !motion.is_finite()) {
+        return bad("motion", "of finite numbers", f64::NAN);
     }
     let bounds = body.shape.bounds_at(&Pose::IDENTITY);
     let corners = [bounds.min, bounds.max].into_iter().flat_map(|corner| [corner.x, corner.y]);

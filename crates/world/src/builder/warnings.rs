@@ -44,7 +44,8 @@ impl WorldBuilder {
             return Some("there are no bodies: nothing will happen".to_owned());
         }
         let all_fixed = self.bodies.iter().all(|body| body.inertia.is_none());
-        all_fixed.then(|| "all bodies are fixed: nothing can move".to_owned())
+        let any_moved = self.bodies.iter().any(|body| body.motion.is_some());
+        (all_fixed && !any_moved).then(|| "all bodies are fixed: nothing can move".to_owned())
     }
 
     /// Warning if all bodies on which a force law acts are fixed.

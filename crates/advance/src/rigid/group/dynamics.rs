@@ -159,6 +159,7 @@ impl Dynamics<'_> {
             }
         }
         self.stage.take_thirds(&self.group.thirds);
+        self.follow_moved();
         self.push_as_prescribed();
         if self.has_a_single_row() {
             self.accelerate_by_row();
@@ -237,11 +238,11 @@ impl Dynamics<'_> {
         }
         if !self.group.rows.is_empty() {
             constrain(self);
-            let asks = |work: &Work| !matches!(work, Work::Law(_) | Work::Damping);
-            if self.group.works.last().is_some_and(asks) {
-                self.note_friction_powers(powers);
-                self.note_driving_powers(powers);
-            }
+        }
+        let asks = |work: &Work| !matches!(work, Work::Law(_) | Work::Damping);
+        if self.group.works.last().is_some_and(asks) {
+            self.note_friction_powers(powers);
+            self.note_driving_powers(powers);
         }
         let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;
         position_rates.as_chunks_mut::<3>().0.copy_from_slice(velocities);

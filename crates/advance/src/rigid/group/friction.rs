@@ -46,6 +46,11 @@ impl Slipping {
         self.turns.first().map(|(_, turn)| turn)
     }
 
+    /// By what the direction of the force of each one's row differs from its normal.
+    pub(super) fn turns(&self) -> &[(u32, [f64; 6])] {
+        &self.turns
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.turns.is_empty()
     }

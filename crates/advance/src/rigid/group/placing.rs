@@ -14,9 +14,12 @@ impl Dynamics<'_> {
         self.stage.load(&self.group.bodies, state);
     }
 
-    /// Sets the offset [s] in the segment at which rows are measured from now on.
+    /// Sets the offset [s] in the segment at which rows are measured from now on, and places what is moved there.
     pub(super) fn set_clock(&mut self, offset: f64) {
         self.physics.mechanism.time = self.start.seconds() + offset;
+        if !self.group.moved.is_empty() {
+            self.place_moved(offset);
+        }
     }
 
     /// Gives all of the group's bodies their poses and velocities at an offset [s] of the segment.

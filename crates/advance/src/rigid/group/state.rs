@@ -78,6 +78,8 @@ pub(crate) struct Group {
     pub(super) pulls: Vec<Pull>,
     /// Force laws that act on its bodies, ascending.
     pub(super) force_laws: Vec<usize>,
+    /// Bodies that are moved and that rows, contacts without force, stops or laws of it tell of.
+    pub(super) moved: Vec<BodyId>,
     pub(super) works: Vec<Work>,
     pub(super) active: ActiveRows,
     /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
@@ -184,6 +186,7 @@ impl Group {
             stops: emptied(old.stops),
             pulls: emptied(old.pulls),
             force_laws: emptied(old.force_laws),
+            moved: emptied(old.moved),
             works: emptied(old.works),
             active: old.active,
             tree: old.tree,
