@@ -86,7 +86,7 @@ pub use event::{ContactEvent, ContactForce, ContactFriction, Event, Impact, Impa
 pub use halfgap_advance::rigid::{Remedy, RemedyCounts, RemedySet};
 pub use halfgap_collision::{
     Anchor, BodyId, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, RailError, RailPath,
-    SlotFrame, Tolerances,
+    SlotFrame, Tolerances, Turn,
 };
 
 pub use finding::Finding;

@@ -15,6 +15,7 @@ mod mirror;
 mod pairs;
 mod parser_fuzz;
 mod passing;
+mod planetary;
 mod probes;
 mod rail_corners;
 mod rail_stops;
