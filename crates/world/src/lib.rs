@@ -85,9 +85,9 @@ pub use estimate::{Difference, ErrorEstimate, FrictionThreshold, TimedDifference
 pub use event::{ContactEvent, ContactForce, ContactFriction, Event, Impact, ImpactRow};
 pub use halfgap_advance::rigid::{Remedy, RemedyCounts, RemedySet};
 pub use halfgap_collision::{
-    Anchor, BodyId, BodyMotion, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, MotionLaw,
-    MotionMoment, MotionSpread, MotionTable, Oscillation, PrescribedMotion, RailError, RailPath, SlotFrame,
-    TableError, Tolerances,
+    Anchor, BodyId, BodyMotion, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, Coordinate,
+    MotionLaw, MotionMoment, MotionSpread, MotionTable, Oscillation, PrescribedMotion, RailError, RailPath,
+    SlotFrame, TableError, Tolerances, Turn,
 };
 
 pub use finding::Finding;

@@ -16,6 +16,7 @@ mod moved;
 mod pairs;
 mod parser_fuzz;
 mod passing;
+mod planetary;
 mod probes;
 mod rail_corners;
 mod rail_stops;

@@ -1,7 +1,8 @@
 //! The rows of an island as one problem, solved to rounding by the modes of its contacts.
 
-use crate::stepping::rows::{Line, Mover, Roll, Row, Third};
+use crate::stepping::rows::{Line, Mover, Roll, Row};
 use crate::stepping::sweeps::Problem as Island;
+use crate::stepping::third::Third;
 use halfgap_contact::{
     InverseInertia, Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver,
     WarmStart,

@@ -1,8 +1,9 @@
 //! Impacts at the start of a step: contacts that have come fast, with all that touches them, by the impact law.
 
 use crate::stepping::bodies::{Bodies, Motion3};
-use crate::stepping::rows::{Mover, Row, Third};
+use crate::stepping::rows::{Mover, Row};
 use crate::stepping::settings::SteppingSettings;
+use crate::stepping::third::Third;
 use halfgap_collision::BodyId;
 use halfgap_contact::{
     CollisionRow, CollisionThird, FrictionRow, Impact, ImpactError, InverseInertia, RowKind,

@@ -3,7 +3,9 @@
 //! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it. Few rows
 //! act on the rotation of a third.
 
+use crate::stepping::balance::Balance;
 use crate::stepping::bodies::Motion3;
+use crate::stepping::third::Third;
 use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_contact::InverseInertia;
@@ -127,31 +129,6 @@ impl Line {
     /// it: of this and the way to the bound, one is rounding.
     pub(super) fn slips(impulse: f64, most: f64, stopping: f64) -> bool {
         stopping.abs() > (most - impulse.abs()).abs().max(ROUNDED * most)
-    }
-}
-
-/// The third side of a row: the rotation of one more body.
-#[derive(Clone, Copy, Debug)]
-#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Third {
-    /// Place of the body.
-    pub(super) place: u32,
-    /// Coefficient of its angular velocity [m].
-    pub(super) arm: f64,
-}
-
-impl Third {
-    /// Its part of the rate [m/s].
-    #[inline]
-    pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
-        self.arm * velocities[self.place as usize][2]
-    }
-
-    /// Adds what an impulse changes to the velocities.
-    #[inline]
-    pub(super) fn push(&self, movers: &mut [Mover], impulse: f64) {
-        let mover = &mut movers[self.place as usize];
-        mover.velocity[2] += mover.inverse_moment * self.arm * impulse;
     }
 }
 
@@ -305,10 +282,8 @@ impl Row {
     /// Adds to the balance of some rows what impulses along the normal and along the surface do, if `rates` are the sums of those before and
     /// after them.
     pub(super) fn weigh(&self, [normal, slip]: [f64; 2], rates: [f64; 2], balance: &mut Balance) {
-        for done in [0.5 * normal * rates[0], slip * (0.5 * rates[1] - self.slip.running)] {
-            balance.work += done;
-            balance.size += done.abs();
-        }
+        balance.add(0.5 * normal * rates[0]);
+        balance.add(slip * (0.5 * rates[1] - self.slip.running));
     }
 
     /// Adds to the velocities what the impulses of the row change.
@@ -324,27 +299,6 @@ impl Row {
         if let Some(third) = &self.third {
             third.push(movers, self.normal.impulse);
         }
-    }
-}
-
-/// Work [J] of the impulses of some rows, seen from what drives them, and the sum of its parts without their signs.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Balance {
-    work: f64,
-    size: f64,
-}
-
-/// Share of the energy before by which a solution may add to it [-]: the scheme is of second order, and smooth motions go to and fro about
-/// their energy. Rows that nothing can do together, such as that a body be to both sides of a wall, have solutions that are as large as
-/// they are nearly parallel.
-const EXPLOSION: f64 = 1e-2;
-/// Share of the parts of a work that is rounding [-].
-const ROUNDING: f64 = 1e-12;
-
-impl Balance {
-    /// True if that is more than a solution may give to bodies that had an energy [J] before.
-    pub(super) fn explodes(&self, energy: f64) -> bool {
-        self.work > EXPLOSION * energy + ROUNDING * self.size
     }
 }
 

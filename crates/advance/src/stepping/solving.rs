@@ -2,9 +2,10 @@
 //!
 //! *Invariant*: a solution gives bodies no more energy than it may, or it is found anew by sweeps.
 
+use crate::stepping::balance::Balance;
 use crate::stepping::bodies::Motion3;
 use crate::stepping::exact::{Effort, Exact};
-use crate::stepping::rows::{Balance, Mover, Rows};
+use crate::stepping::rows::{Mover, Rows};
 use crate::stepping::sweeps::{Enough, Problem, Sweeps};
 
 /// Number of rows up to which an island is solved exactly, by whatever it takes.

@@ -1,7 +1,8 @@
 //! Connectors: what is remembered of them from one step to the next, and their rows.
 
 use crate::stepping::bodies::Bodies;
-use crate::stepping::rows::{Lengths, Line, Row, Rows, Slip, Source, Third};
+use crate::stepping::rows::{Lengths, Line, Row, Rows, Slip, Source};
+use crate::stepping::third::Third;
 use halfgap_collision::{Connector, ConnectorKind, ConnectorSample, Moving, RailHint, Surroundings};
 
 /// What is remembered of a connector.

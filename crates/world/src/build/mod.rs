@@ -214,8 +214,14 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         | WorldError::CannotConnect { connector, .. }
         | WorldError::BadConnector { connector, .. }
         | WorldError::FarConnector { connector, .. }
+        | WorldError::NeedsEvents { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {
-            Some(top.field("connector").element(connector.index).field(connector.kind))
+            let ConnectorName { index, kind, .. } = connector;
+            let element = top.field("connector").element(*index);
+            // What acts on a free coordinate is a field of its connector.
+            let whole = scene.connectors.get(*index).map_or(*kind, |connector| connector.key());
+            let field = element.field(whole);
+            Some(if whole == *kind { field } else { field.field(*kind) })
         }
         WorldError::BadSetting { setting, .. } | WorldError::LostInRounding { setting, .. } => {
             Some(top.field("run").field(*setting))

@@ -5,7 +5,7 @@ use crate::force::ForceLaw;
 use crate::rigid_settings::method;
 use glam::DVec2;
 use halfgap_advance::rigid::Scales;
-use halfgap_collision::{BodyId, BodyState, Connector};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorKind};
 use halfgap_geometry::Rounded;
 use std::sync::Arc;
 
@@ -88,7 +88,10 @@ impl WorldBuilder {
     /// Warning if a stop has no rail to end.
     pub(super) fn stop_warning(&self) -> Option<String> {
         let connectors = || self.connectors.iter().map(|spec| &spec.connector);
-        let is_lone = |stop: &Connector| stop.is_stop() && !connectors().any(|rail| stop.is_stop_of(rail));
+        let is_lone = |stop: &Connector| {
+            let ends = matches!(stop.kind, ConnectorKind::RailStop { .. });
+            ends && !connectors().any(|rail| stop.is_stop_of(rail))
+        };
         let index = connectors().position(is_lone)?;
         let name = self.connector_name(index);
         Some(format!(
