@@ -124,8 +124,13 @@ fn record(
         Participant::new(normal.id, shape_normal, normal_feature),
     ];
     let kinds = [shape_primary.source(primary_feature).kind, shape_normal.source(normal_feature).kind];
-    let parties =
-        Parties { primary: sides[0], normal: sides[1], bilateral: false, detector: detector(kinds) };
+    let parties = Parties {
+        primary: sides[0],
+        normal: sides[1],
+        third: None,
+        bilateral: false,
+        detector: detector(kinds),
+    };
     let radii = [
         primary.body.shape.feature(primary_feature).radius(),
         normal.body.shape.feature(normal_feature).radius(),

@@ -88,7 +88,8 @@ pub use kinematics::{Arms, BodyAcceleration, GapKinematics};
 pub use merge::{is_same_collision, merge_collisions};
 pub use motion::{Ball, BodyState, Motion, MotionBounds, Moving, Polynomial};
 pub use motion_law::{
-    BodyMotion, MotionLaw, MotionMoment, MotionSpread, MotionTable, Oscillation, PrescribedMotion, TableError,
+    BodyMotion, MotionLaw, MotionMoment, MotionSpread, MotionTable, MovedPath, Oscillation, PrescribedMotion,
+    TableError,
 };
 pub use near::{Nearness, visit_near_features};
 pub use quadratic::first_closing_time;

@@ -98,6 +98,8 @@ pub struct Parties {
     pub primary: Participant,
     /// The body that the normal points out of.
     pub normal: Participant,
+    /// A third body, and the coefficient [m] of its angular velocity in the rate of the gap: as [`Connector::third`].
+    pub third: Option<(BodyId, f64)>,
     /// True if the gap may neither close nor open.
     pub bilateral: bool,
     /// Origin of the record.
@@ -233,7 +235,8 @@ impl Collision {
     ) -> Self {
         let [primary, normal] = connector.bodies().map(Participant::of_connector);
         let detector = Detector::Connector { id, row };
-        let parties = Parties { primary, normal, bilateral: connector.is_bilateral(), detector };
+        let (third, bilateral) = (connector.third(), connector.is_bilateral());
+        let parties = Parties { primary, normal, third, bilateral, detector };
         let tolerances = Tolerances { target_gap: 0.0, ..*tolerances };
         let described = describe_connector(connector, sample, bodies);
         Self::from_parts(parties, described, tolerances, connector.elasticity, time)
@@ -354,7 +357,7 @@ impl Collision {
     #[must_use]
     #[inline]
     pub fn involves_body(&self, body: BodyId) -> bool {
-        self.bodies().contains(&body)
+        self.bodies().contains(&body) || self.parties.third.is_some_and(|(third, _)| third == body)
     }
 }
 

@@ -23,6 +23,7 @@ fn corner(side: f64, elasticity: f64) -> CollisionRow {
         bodies: [BodyId(0), BodyId(1)],
         jacobian: [0.0, 1.0, arm, 0.0, -1.0, -arm],
         response: [0.0, 1.0 / MASS, arm / moment, 0.0, 0.0, 0.0],
+        third: None,
         elasticity,
         velocity_tol: 1e-9,
         kind: RowKind::Unilateral,

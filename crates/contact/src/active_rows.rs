@@ -17,8 +17,10 @@ mod factor;
 mod redundant;
 mod refining;
 mod structure;
+mod thirds;
 mod turned;
 
+pub use thirds::ThirdSide;
 pub use turned::TurnedRows;
 
 use crate::exchanges::Exchanges;
@@ -27,6 +29,7 @@ use crate::settings::{DELICATE, DOUBTFUL, Settings};
 use factor::Factor;
 use refining::Refining;
 use structure::Shared;
+use thirds::Thirds;
 
 /// Fraction of a row's square A_ii: a remainder below it, left by earlier rows, cannot be told from the rounding of
 /// their forces.
@@ -77,6 +80,7 @@ pub struct ActiveRows {
     /// Earlier rows that share a body with each side of each row, and where those of a side begin.
     shared: Vec<Shared>,
     shared_start: Vec<usize>,
+    thirds: Thirds,
     /// L and 1/D; a row that depends on earlier ones has no pivot.
     factor: Factor,
     /// True for a row that depends on others, or on which another depends.
@@ -122,6 +126,7 @@ impl ActiveRows {
             root: Vec::new(),
             shared: Vec::new(),
             shared_start: Vec::new(),
+            thirds: Thirds::default(),
             factor: Factor::default(),
             shares: Vec::new(),
             raise: Vec::new(),
@@ -208,12 +213,14 @@ impl ActiveRows {
                 }
             }
         }
+        self.thirds.add_entries(&self.jacobian, entries);
     }
 
     /// The square A_ii of a row of Ĵ.
     fn square(&self, place: usize) -> f64 {
         let [p, q] = &self.jacobian[place];
-        (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) + (q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
+        let of_two = (p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) + (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+        of_two + self.third_square(place)
     }
 
     /// Adds a multiple of a row of Ĵ to the motion.
@@ -223,6 +230,9 @@ impl ActiveRows {
             for (out, entry) in self.motion[body as usize].iter_mut().zip(row) {
                 *out += share * entry;
             }
+        }
+        if let Some(third) = self.thirds.of(place) {
+            self.motion[third.body as usize][2] += share * third.entry;
         }
     }
 
@@ -294,6 +304,7 @@ impl ActiveRows {
                 }
             }
         }
+        self.respond_by_thirds(force, change);
     }
 }
 
@@ -312,9 +323,21 @@ mod tests {
         jacobians: &[[f64; 6]],
         force: &[f64],
     ) -> (Vec<[f64; 3]>, Vec<f64>) {
+        accelerations_with_thirds(inertia, (rows, &[]), jacobians, force)
+    }
+
+    fn accelerations_with_thirds(
+        inertia: &[InverseInertia],
+        (rows, thirds): (&[[Option<u32>; 2]], &[ThirdSide]),
+        jacobians: &[[f64; 6]],
+        force: &[f64],
+    ) -> (Vec<[f64; 3]>, Vec<f64>) {
         let mut change = vec![[0.0; 3]; inertia.len()];
         let entries = |row: usize| {
-            (0..6).filter_map(move |k| Some((rows[row][k / 3]? as usize, k % 3, jacobians[row][k])))
+            let own = thirds.iter().filter(move |third| third.row as usize == row);
+            let of_two =
+                (0..6).filter_map(move |k| Some((rows[row][k / 3]? as usize, k % 3, jacobians[row][k])));
+            of_two.chain(own.map(|third| (third.body as usize, 2, third.coefficient)))
         };
         for (row, push) in force.iter().enumerate() {
             for (body, k, coefficient) in entries(row) {
@@ -335,12 +358,21 @@ mod tests {
         jacobians: &[[f64; 6]],
         offset: &[f64],
     ) -> usize {
+        check_with_thirds(inertia, (rows, &[]), jacobians, offset)
+    }
+
+    fn check_with_thirds(
+        inertia: &[InverseInertia],
+        (rows, thirds): (&[[Option<u32>; 2]], &[ThirdSide]),
+        jacobians: &[[f64; 6]],
+        offset: &[f64],
+    ) -> usize {
         let mut active = ActiveRows::default();
-        active.set_structure(inertia, rows);
+        active.set_structure_with_thirds(inertia, rows, thirds);
         let dependent = active.factorize(jacobians);
         let mut force = vec![f64::NAN; rows.len()];
         active.solve(offset, &mut force);
-        let (expected, rates) = accelerations(inertia, rows, jacobians, &force);
+        let (expected, rates) = accelerations_with_thirds(inertia, (rows, thirds), jacobians, &force);
         let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
         for row in 0..rows.len() {
             // Rows whose remainder is up to the root of the threshold count as dependent.
@@ -502,6 +534,65 @@ mod tests {
         }
     }
 
+    /// A row of angles alone: a - ratio b + (ratio - 1) c, with c as its third side.
+    fn gear(row: u32, carrier: u32, ratio: f64) -> ([f64; 6], ThirdSide) {
+        let third = ThirdSide { row, body: carrier, coefficient: ratio - 1.0 };
+        ([0.0, 0.0, 1.0, 0.0, 0.0, -ratio], third)
+    }
+
+    #[test]
+    fn two_gears_on_one_carrier_turn_as_their_ratios_say() {
+        // A sun, a planet and their carrier, all free to turn; the ring is fixed.
+        let [sun, planet, carrier] =
+            [3.0, 5.0, 0.5].map(|inverse_moment| InverseInertia { inverse_mass: 1.0, inverse_moment });
+        let (first, of_first) = gear(0, 2, -0.8);
+        let (second, of_second) = gear(1, 2, 3.25);
+        let sides = [[Some(0), Some(1)], [Some(1), None]];
+        let mut active = ActiveRows::default();
+        let inertia = [sun, planet, carrier];
+        active.set_structure_with_thirds(&inertia, &sides, &[of_second, of_first]);
+        assert_eq!(active.factorize(&[first, second]), 0);
+        let mut force = [0.0; 2];
+        active.solve(&[3.0, 0.0], &mut force);
+        // A unit torque on the sun; planet and carrier turn -2.25/3.6 and 1/3.6 as fast as it.
+        let mut change = [[0.0, 0.0, 3.0], [0.0; 3], [0.0; 3]];
+        active.respond(&force, &mut change);
+        let [p, c] = [-2.25 / 3.6, 1.0 / 3.6];
+        let expected = 1.0 / (1.0 / 3.0 + p * p / 5.0 + c * c / 0.5);
+        for (change, share) in change.iter().zip([1.0, p, c]) {
+            assert!((change[2] - share * expected).abs() < 1e-14 && change[..2] == [0.0; 2], "{change:?}");
+        }
+    }
+
+    #[test]
+    fn a_gear_given_twice_depends_and_soft_rows_share_its_load() {
+        let (row, third) = gear(0, 2, -0.8);
+        let sides = [[Some(0), Some(1)]; 2];
+        let thirds = [third, ThirdSide { row: 1, ..third }];
+        let inertia = [INERTIA; 3];
+        assert_eq!(check_with_thirds(&inertia, (&sides, &thirds), &[row; 2], &[1.0; 2]), 1);
+        // The same sides without the carrier are another row.
+        assert_eq!(check_with_thirds(&inertia, (&sides, &thirds[..1]), &[row; 2], &[1.0, 0.5]), 0);
+        let mut active = ActiveRows::default();
+        active.set_structure_with_thirds(&inertia, &sides, &thirds);
+        active.factorize(&[row; 2]);
+        active.soften(|_| true);
+        assert_eq!(active.factorize(&[row; 2]), 0);
+        let mut force = [0.0; 2];
+        active.solve(&[1.0; 2], &mut force);
+        let (_, rates) = accelerations_with_thirds(&inertia, (&sides, &thirds), &[row; 2], &force);
+        assert!((force[0] - force[1]).abs() < 1e-6 && (rates[0] + 1.0).abs() < 1e-13, "{force:?} {rates:?}");
+    }
+
+    #[test]
+    fn a_gear_between_fixed_bodies_holds_its_carrier() {
+        let (row, third) = gear(0, 0, -0.8);
+        assert_eq!(check_with_thirds(&[INERTIA], (&[[None; 2]], &[third]), &[row], &[1.0]), 0);
+        // A carrier that cannot turn is no side.
+        let fixed = InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 };
+        assert_eq!(check_with_thirds(&[fixed], (&[[None; 2]], &[third]), &[row], &[0.0]), 1);
+    }
+
     fn any_body() -> impl Strategy<Value = InverseInertia> {
         (0.1..10.0f64, 0.1..10.0f64, 0..8).prop_map(|(inverse_mass, inverse_moment, kind)| match kind {
             0 => InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 },
@@ -548,6 +639,27 @@ mod tests {
             let dependent = check(&inertia, &rows, &jacobians, &offset);
             let movable = inertia.iter().filter(|body| body.inverse_mass > 0.0).count();
             prop_assert!(rows.len() - dependent <= 3 * movable);
+        }
+
+        #[test]
+        fn linkages_with_third_sides_are_held(
+            (inertia, rows, jacobians, motion) in any_linkage(),
+            thirds in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), -2.0..2.0f64), 1..6),
+        ) {
+            let named = thirds.into_iter().map(|(row, body, coefficient)| ThirdSide {
+                row: row.index(rows.len()) as u32,
+                body: body.index(inertia.len()) as u32,
+                coefficient,
+            });
+            let mut thirds: Vec<ThirdSide> =
+                named.filter(|third| !rows[third.row as usize].contains(&Some(third.body))).collect();
+            thirds.sort_by_key(|third| third.row);
+            thirds.dedup_by_key(|third| third.row);
+            let mut offset = offsets(&rows, &jacobians, &motion);
+            for third in &thirds {
+                offset[third.row as usize] += third.coefficient * motion[third.body as usize][2];
+            }
+            check_with_thirds(&inertia, (&rows, &thirds), &jacobians, &offset);
         }
     }
 }

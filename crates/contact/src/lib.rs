@@ -96,7 +96,7 @@ mod twofold;
 mod warm;
 mod words;
 
-pub use active_rows::{ActiveRows, TurnedRows};
+pub use active_rows::{ActiveRows, ThirdSide, TurnedRows};
 pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;
@@ -114,7 +114,7 @@ pub use problem::{ContactKey, InverseInertia, Problem, ProblemBody, Row};
 pub use proximal_newton::ProximalNewton;
 #[cfg(feature = "qp")]
 pub use qp::Qp;
-pub use row::CollisionRow;
+pub use row::{CollisionRow, CollisionThird};
 pub use settings::{Contradiction, ForceSelection, Settings};
 pub use solution::Solution;
 pub use solver::{Method, Solver};

@@ -91,6 +91,8 @@ pub struct Row {
     pub primary: (ProblemBody, [f64; 3]),
     /// The normal body and its coefficients for x, y \[1\] and rotation \[m\]; `None` if that side is immovable.
     pub normal: Option<(ProblemBody, [f64; 3])>,
+    /// A third body, with the coefficient of its rotation \[m\]; `None` for most rows.
+    pub third: Option<(ProblemBody, f64)>,
     /// b_i, negative when the gap closes: acceleration of the gap without contact forces [m/s²], or in impact problems
     /// its rate less the rate to be reached [m/s].
     pub offset: f64,
@@ -112,6 +114,7 @@ impl Row {
         Row {
             primary: (body, coefficients),
             normal: None,
+            third: None,
             offset,
             kind: RowKind::Unilateral,
             force: None,
@@ -139,6 +142,17 @@ impl Row {
             [Some(a), None] => Some(Self::new(a, primary, offset)),
             [None, Some(b)] => Some(Self::new(b, normal, offset)),
             [None, None] => None,
+        }
+    }
+
+    /// Adds the rotation of a further body to a row of one or two sides, with its coefficient \[m\]; where neither side can move, as
+    /// told by `None`, the row has that body alone.
+    #[must_use]
+    #[inline]
+    pub fn turning(sides: Option<Self>, body: ProblemBody, coefficient: f64, offset: f64) -> Self {
+        match sides {
+            Some(row) => Row { third: Some((body, coefficient)), ..row },
+            None => Row::new(body, [0.0, 0.0, coefficient], offset),
         }
     }
 
@@ -327,7 +341,8 @@ impl Problem {
             return Err(ProblemError::NoBodies);
         };
         let columns = bodies.inverse_mass.len();
-        for (body, coefficients) in std::iter::once(row.primary).chain(row.normal) {
+        let third = row.third.map(|(body, coefficient)| (body, [0.0, 0.0, coefficient]));
+        for (body, coefficients) in std::iter::once(row.primary).chain(row.normal).chain(third) {
             let column = 3 * body.0 as usize;
             if column + 3 > columns {
                 return Err(ProblemError::NoSuchColumn { row: index, column, columns });
@@ -543,7 +558,22 @@ fn push_coefficients(rows: &mut SparseMatrix, row: &Row) {
             }
         }
     }
+    if let Some((body, value)) = row.third.filter(|(_, value)| *value != 0.0) {
+        push_third(rows, 3 * body.0 as usize + 2, value);
+    }
     rows.start.push(rows.column.len());
+}
+
+/// Puts the coefficient of a third body at its place among those of the row that is being appended.
+fn push_third(rows: &mut SparseMatrix, column: usize, value: f64) {
+    let begin = rows.start.last().copied().unwrap_or_default();
+    let at = begin + rows.column[begin..].partition_point(|&other| other < column);
+    if rows.column.get(at) == Some(&column) {
+        rows.value[at] += value;
+    } else {
+        rows.column.insert(at, column);
+        rows.value.insert(at, value);
+    }
 }
 
 fn dense_triplets(rows: &[Vec<f64>], n: usize) -> Result<Vec<(usize, usize, f64)>, ProblemError> {

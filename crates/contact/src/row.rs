@@ -4,6 +4,27 @@ use crate::kind::RowKind;
 use crate::problem::InverseInertia;
 use halfgap_collision::{BodyId, Collision};
 
+/// The third side of a row: the angular velocity of a body that is neither its primary nor its normal one, as of the carrier of a gear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct CollisionThird {
+    /// The body.
+    pub body: BodyId,
+    /// Coefficient \[m\] of its angular velocity in the rate of the row.
+    pub jacobian: f64,
+    /// Change of its angular velocity per unit impulse along the row [1/(kg m)].
+    pub response: f64,
+}
+
+impl CollisionThird {
+    /// Makes the third side of a row, with the coefficient \[m\] of the angular velocity of its body and the inertia of that.
+    #[must_use]
+    #[inline]
+    pub fn new(body: BodyId, jacobian: f64, inertia: InverseInertia) -> Self {
+        Self { body, jacobian, response: jacobian * inertia.inverse_moment }
+    }
+}
+
 /// One scalar constraint between two bodies of an impact.
 ///
 /// The rate of its gap is J v [m/s] with the velocities v = (vAx, vAy, wA, vBx, vBy, wB) [m/s, m/s, rad/s, ...] of the
@@ -17,6 +38,8 @@ pub struct CollisionRow {
     pub jacobian: [f64; 6],
     /// J M^-1 [1/kg, 1/kg, 1/(kg m), ...]: change of the six velocities per unit impulse along the row.
     pub response: [f64; 6],
+    /// A third body on whose angular velocity the rate depends; none for a contact.
+    pub third: Option<CollisionThird>,
     /// Restitution [-], 0 to 1: fraction of the closing speed at which the row opens again.
     pub elasticity: f64,
     /// Closing speed [m/s] up to which the elasticity does not act.
@@ -57,6 +80,7 @@ impl CollisionRow {
             bodies,
             jacobian,
             response: response(&jacobian, inertia),
+            third: None,
             elasticity: 0.0,
             velocity_tol: 0.0,
             kind: RowKind::Unilateral,
@@ -92,17 +116,45 @@ impl CollisionRow {
                 }
             }
         }
-        sum
+        if self.third.is_some() || other.third.is_some() { sum + self.coupling_by_thirds(other) } else { sum }
     }
 
-    /// Change of the row's own rate per unit impulse along it [1/kg], through each of its two bodies alone. The two add
-    /// up to its diagonal entry of the Delassus matrix.
+    /// The part of the coupling with another row that goes through a third body of either.
+    fn coupling_by_thirds(&self, other: &CollisionRow) -> f64 {
+        let on_sides = |row: &Self, entries: &[f64; 6], body: BodyId| -> f64 {
+            (0..2).filter(|&side| row.bodies[side] == body).map(|side| entries[3 * side + 2]).sum()
+        };
+        let of_own = self.third.map_or(0.0, |own| {
+            let of_both = other.third.filter(|theirs| theirs.body == own.body);
+            let of_theirs = of_both.map_or(0.0, |theirs| theirs.response);
+            own.jacobian * (on_sides(other, &other.response, own.body) + of_theirs)
+        });
+        let of_other =
+            other.third.map_or(0.0, |theirs| on_sides(self, &self.jacobian, theirs.body) * theirs.response);
+        of_own + of_other
+    }
+
+    /// The body that an impulse along the row turns by its third side.
+    #[must_use]
+    pub(crate) fn movable_third(&self) -> Option<BodyId> {
+        self.third.filter(|third| third.response != 0.0 && !third.body.is_world()).map(|third| third.body)
+    }
+
+    /// The square of the row: its own coupling, as the sum over its entries [1/kg].
+    #[must_use]
+    pub(crate) fn square(&self) -> f64 {
+        let of_two: f64 = self.jacobian.iter().zip(&self.response).map(|(j, r)| j * r).sum();
+        self.third.map_or(of_two, |third| of_two + third.jacobian * third.response)
+    }
+
+    /// Change of the row's own rate per unit impulse along it [1/kg], through each of its two bodies alone. Without a third
+    /// the two add up to its diagonal entry of the Delassus matrix.
     #[must_use]
     pub(crate) fn shares(&self) -> [f64; 2] {
         [0, 3].map(|first: usize| (first..first + 3).map(|k| self.jacobian[k] * self.response[k]).sum())
     }
 
-    /// The bodies that an impulse along the row moves; `None` for an immovable one and for the background.
+    /// The two bodies, so far as an impulse along the row moves them; `None` for an immovable one and for the background.
     pub(crate) fn movable_bodies(&self) -> [Option<BodyId>; 2] {
         [0, 1].map(|side| {
             let moves = self.response[3 * side..3 * side + 3].iter().any(|&x| x != 0.0);
@@ -116,4 +168,55 @@ pub(crate) fn response(jacobian: &[f64; 6], [a, b]: [InverseInertia; 2]) -> [f64
     let weights =
         [a.inverse_mass, a.inverse_mass, a.inverse_moment, b.inverse_mass, b.inverse_mass, b.inverse_moment];
     std::array::from_fn(|k| jacobian[k] * weights[k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn rows_of_three_bodies_couple_as_their_dense_products(
+            entries in prop::array::uniform2(prop::array::uniform7(-1.0..1.0f64)),
+            bodies in prop::array::uniform2(prop::sample::subsequence(vec![0u32, 1, 2, 3], 3)),
+            has_third in prop::array::uniform2(any::<bool>()),
+        ) {
+            let inertia = |body: u32| InverseInertia {
+                inverse_mass: 0.5 + f64::from(body),
+                inverse_moment: 2.0 - 0.4 * f64::from(body),
+            };
+            let row = |at: usize| {
+                let sides = [bodies[at][0], bodies[at][1]];
+                let jacobian = std::array::from_fn(|k| entries[at][k]);
+                let row = CollisionRow::new(sides.map(BodyId), jacobian, sides.map(inertia), 0.0);
+                let third = CollisionThird::new(BodyId(bodies[at][2]), entries[at][6], inertia(bodies[at][2]));
+                CollisionRow { third: has_third[at].then_some(third), ..row }
+            };
+            let dense = |at: usize| {
+                let mut dense = [[0.0; 3]; 4];
+                for side in 0..2 {
+                    dense[bodies[at][side] as usize] = std::array::from_fn(|k| entries[at][3 * side + k]);
+                }
+                if has_third[at] {
+                    dense[bodies[at][2] as usize][2] = entries[at][6];
+                }
+                dense
+            };
+            let product = |p: usize, q: usize| -> f64 {
+                let (p, q) = (dense(p), dense(q));
+                let of_body = |body: usize| {
+                    let InverseInertia { inverse_mass, inverse_moment } = inertia(body as u32);
+                    let weights = [inverse_mass, inverse_mass, inverse_moment];
+                    (0..3).map(|k| p[body][k] * weights[k] * q[body][k]).sum::<f64>()
+                };
+                (0..4).map(of_body).sum()
+            };
+            let rows = [row(0), row(1)];
+            for (p, q) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                prop_assert!((rows[p].coupling(&rows[q]) - product(p, q)).abs() < 1e-13);
+            }
+            prop_assert!((rows[0].square() - product(0, 0)).abs() < 1e-13);
+        }
+    }
 }

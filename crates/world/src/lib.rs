@@ -85,12 +85,13 @@ pub use estimate::{Difference, ErrorEstimate, FrictionThreshold, TimedDifference
 pub use event::{ContactEvent, ContactForce, ContactFriction, Event, Impact, ImpactRow};
 pub use halfgap_advance::rigid::{Remedy, RemedyCounts, RemedySet};
 pub use halfgap_collision::{
-    Anchor, BodyId, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, RailError, RailPath,
-    SlotFrame, Tolerances,
+    Anchor, BodyId, BodyMotion, BodyState, Connector, ConnectorError, ConnectorId, ConnectorKind, Coordinate,
+    MotionLaw, MotionMoment, MotionSpread, MotionTable, Oscillation, PrescribedMotion, RailError, RailPath,
+    SlotFrame, TableError, Tolerances, Turn,
 };
 
 pub use finding::Finding;
-pub use halfgap_advance::rigid::{PairRule, Surface, UniformMotion};
+pub use halfgap_advance::rigid::{PairRule, Surface};
 pub use halfgap_contact::{ImpactLaw, ImpactOrder, Restitution};
 pub use halfgap_geometry as geometry;
 pub use intervention::Intervention;

@@ -74,6 +74,8 @@ pub(crate) struct Named {
     pub(crate) center_of_mass: DVec2,
     /// Mass [kg] and moment of inertia [kg m^2]; `None` for a fixed body.
     pub(crate) inertia: Option<Inertia>,
+    /// It is a fixed body that is moved.
+    pub(crate) moved: bool,
     /// Sum of the uniform gravities that act on it [m/s^2].
     pub(crate) gravity: DVec2,
 }
@@ -174,13 +176,22 @@ impl World {
         name_among(&self.bodies, body)
     }
 
-    /// True for fixed bodies, which nothing moves, and for the background.
+    /// True for fixed bodies, which nothing pushes, and for the background.
     ///
     /// # Panics
     /// If the world has no such body.
     #[must_use]
     pub fn is_fixed(&self, body: BodyId) -> bool {
         body.is_world() || self.bodies[body.index()].inertia.is_none()
+    }
+
+    /// True for fixed bodies that are moved as prescribed.
+    ///
+    /// # Panics
+    /// If the world has no such body.
+    #[must_use]
+    pub fn is_moved(&self, body: BodyId) -> bool {
+        !body.is_world() && self.bodies[body.index()].moved
     }
 
     /// Shape of a body, in body coordinates, whose origin is the centre of mass.

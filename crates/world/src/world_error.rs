@@ -34,14 +34,6 @@ pub enum WorldError {
         /// The value, in SI units.
         value: f64,
     },
-    /// A body has what only steps simulate so far: if it is fixed, a motion.
-    #[error("body \"{body}\": events do not simulate its {quantity} yet: advance by steps")]
-    NeedsSteps {
-        /// Name of the body.
-        body: String,
-        /// What only steps simulate.
-        quantity: &'static str,
-    },
     /// A body has friction where contacts carry impulses only, or where their errors are not projected.
     #[error(
         "body \"{body}\": friction needs contacts that carry forces and are projected: leave `contacts` and `stabilization` as they are, or \
@@ -166,6 +158,14 @@ pub enum WorldError {
         connector: ConnectorName,
         /// Error that remains [m].
         error: f64,
+    },
+    /// Something that only an advance by events simulates so far.
+    #[error("{connector}: an advance by steps does not know {what} yet; use the strategy of events")]
+    NeedsEvents {
+        /// The connector.
+        connector: ConnectorName,
+        /// What it has.
+        what: &'static str,
     },
     /// Velocities at the start cannot be made to fit the connectors.
     #[error("{connector} comes apart at {} m/s at the start, and no velocities fit all connectors", Rounded(*rate))]

@@ -3,7 +3,7 @@
 use halfgap::geometry::{DVec2, Shape};
 use halfgap::scene::{RunData, Scene, SceneFormat, StrategyData};
 use halfgap::{
-    AdvanceBy, BodyId, BodySpec, BodyState, CheckReport, ContactForce, Event, Intervention, UniformMotion,
+    AdvanceBy, BodyId, BodyMotion, BodySpec, BodyState, CheckReport, ContactForce, Event, Intervention,
     World, WorldBuilder, WorldSettings, check,
 };
 use halfgap_tests::{data, names_in};
@@ -371,18 +371,11 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
     let of = |run: &str, field: &str| {
         refusal(&format!("run = {{ duration = 1.0, {run} }}\n{body}{field}\n{other}"))
     };
-    let events = "strategy = \"events\"";
     let steps = "strategy = \"steps\"";
     for (run, field, place) in [
         ("contacts = false, time_step = 0.1", "friction = 0.5", "body[0].friction"),
         ("stabilization = \"velocity\"", "static_friction = 0.5", "body[0].static_friction"),
         ("stabilization = \"velocity\"", "rolling_resistance = 0.5", "body[0].rolling_resistance"),
-        (events, "motion = { angular_velocity = 1.0 }", "body[0].motion"),
-        (
-            steps,
-            "motion = { oscillate = { amplitude = [1.0, 0.0], frequency = 1.0 } }",
-            "body[0].motion.oscillate",
-        ),
         ("strategy = \"steps\", contacts = false", "", "run.contacts"),
         (steps, "friction = 0.5\nstatic_friction = 0.4", "body[0].static_friction"),
     ] {
@@ -392,21 +385,20 @@ fn what_steps_or_events_do_not_know_is_refused_by_name() {
 }
 
 #[test]
-fn what_only_steps_know_is_refused_from_code_too_and_so_is_a_step_of_no_length() {
+fn a_body_that_is_moved_is_built_from_code_and_a_step_of_no_length_is_refused() {
     let build = |strategy: AdvanceBy, spin: f64| {
         let mut builder = WorldBuilder::new(WorldSettings { strategy, ..WorldSettings::default() });
         let shape = Shape::disc(1.0).expect("a fine radius");
-        let motion = UniformMotion { angular_velocity: spin, ..UniformMotion::default() };
-        let motion = (spin != 0.0).then_some(motion);
+        let motion = (spin != 0.0).then(|| BodyMotion::uniform(DVec2::ZERO, spin));
         builder.add(BodySpec { motion, ..BodySpec::fixed("disc", shape, DVec2::ZERO) });
         builder.build().map(|_| ()).map_err(|error| error.to_string())
     };
     let steps = |step: f64| AdvanceBy::Steps { step: Some(step), residual: 1e-6 };
-    let refused = build(AdvanceBy::Events, 0.5).expect_err("events move no fixed body");
-    assert_eq!(refused, "body \"disc\": events do not simulate its motion yet: advance by steps");
+    let refused = build(AdvanceBy::Events, f64::NAN).expect_err("it goes nowhere");
+    assert_eq!(refused, "body \"disc\": motion must be of finite numbers, got NaN");
     for step in [0.0, -1.0, f64::NAN] {
         let refused = build(steps(step), 0.5).expect_err("no time goes by");
         assert!(refused.contains("time_step must be positive and finite"), "{refused}");
     }
-    assert_eq!((build(steps(0.01), 0.5), build(AdvanceBy::Events, 0.0)), (Ok(()), Ok(())));
+    assert_eq!((build(steps(0.01), 0.5), build(AdvanceBy::Events, 0.5)), (Ok(()), Ok(())));
 }

@@ -5,8 +5,8 @@ use crate::scene::{Body, Connector, End, Scene};
 use glam::DVec2;
 use halfgap::force::Spring;
 use halfgap::{
-    AdvanceBy, Anchor, BodyId, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia, RailPath,
-    SlotFrame, Surface, UniformMotion, World, WorldBuilder, WorldSettings, geometry,
+    AdvanceBy, Anchor, BodyId, BodyMotion, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia,
+    RailPath, SlotFrame, Surface, World, WorldBuilder, WorldSettings, geometry,
 };
 use std::sync::Arc;
 
@@ -97,8 +97,7 @@ fn body_spec(body: &Body) -> Result<BodySpec, geometry::ShapeError> {
         state: body.start,
         elasticity: body.elasticity,
         surface: Surface { friction, static_friction, velocity: speed, ..Surface::default() },
-        motion: (body.spin != 0.0)
-            .then_some(UniformMotion { angular_velocity: body.spin, ..UniformMotion::default() }),
+        motion: (body.spin != 0.0).then(|| BodyMotion::uniform(DVec2::ZERO, body.spin)),
     })
 }
 

@@ -72,7 +72,7 @@ pub(crate) use forest::Forest;
 pub use halfgap_collision as collision;
 pub use halfgap_contact as contact;
 pub use halfgap_geometry as geometry;
-pub use parts::{BodyPart, PartsError, RigidParts, UniformMotion};
+pub use parts::{BodyPart, PartsError, RigidParts};
 pub(crate) use parts::{POSITIVE, check_bodies_of_force_law, keep_to};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
 pub use scales::Scales;

@@ -6,8 +6,7 @@ use crate::rigid::settings::RigidSettings;
 use crate::rigid::surface::Surface;
 use crate::rigid::surfaces::PairRule;
 use crate::time::Time;
-use glam::DVec2;
-use halfgap_collision::{Body, BodyId, BodyState, Connector, ConnectorError, Tolerances};
+use halfgap_collision::{Body, BodyId, BodyMotion, BodyState, Connector, ConnectorError, Tolerances};
 use std::sync::Arc;
 
 /// Parts of which a system is made.
@@ -37,8 +36,8 @@ pub struct BodyPart {
     pub state: BodyState,
     /// What the surface does to bodies that touch it.
     pub surface: Surface,
-    /// Motion of a fixed body that is moved; only steps know of it. `None` for one that stays, ignored for a movable body.
-    pub motion: Option<UniformMotion>,
+    /// Motion of a fixed body that is moved. `None` for one that stays, ignored for a movable body.
+    pub motion: Option<BodyMotion>,
 }
 
 impl BodyPart {
@@ -47,16 +46,6 @@ impl BodyPart {
     pub fn new(body: Body, free_motion: FreeMotion, state: BodyState) -> Self {
         Self { body, free_motion, state, surface: Surface::default(), motion: None }
     }
-}
-
-/// Uniform motion of a fixed body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
-pub struct UniformMotion {
-    /// Velocity of the centre of mass [m/s].
-    pub velocity: DVec2,
-    /// Angular velocity [rad/s].
-    pub angular_velocity: f64,
 }
 
 /// Reason why no system can be made of some parts or settings.
@@ -154,7 +143,7 @@ impl RigidParts {
         let count = self.bodies.len();
         let check = |part, index, body| check_named(part, index, body, count);
         for (index, connector) in self.connectors.iter().enumerate() {
-            connector.bodies().into_iter().try_for_each(|body| check("connector", index, body))?;
+            connector.all_bodies().try_for_each(|body| check("connector", index, body))?;
         }
         for (index, law) in self.force_laws.iter().enumerate() {
             check_bodies_of_force_law(index, law.as_ref(), count)?;
@@ -233,7 +222,6 @@ fn check_body(BodyPart { body, free_motion, state, surface, motion }: &BodyPart)
         ("static friction", surface.static_friction),
         ("rolling resistance", surface.rolling_resistance),
     ];
-    let motion = motion.unwrap_or_default();
     let shares = [("elasticity", body.elasticity), ("tangential elasticity", surface.tangential_elasticity)];
     let numbers = [
         ("x", state.position.x),
@@ -245,10 +233,10 @@ fn check_body(BodyPart { body, free_motion, state, surface, motion }: &BodyPart)
         ("acceleration.x", free_motion.acceleration.x),
         ("acceleration.y", free_motion.acceleration.y),
         ("surface velocity", surface.velocity),
-        ("motion.velocity.x", motion.velocity.x),
-        ("motion.velocity.y", motion.velocity.y),
-        ("motion.angular_velocity", motion.angular_velocity),
     ];
+    if motion.as_ref().is_some_and(|motion| !motion.is_finite()) {
+        return Err(("motion", FINITE.0, f64::NAN));
+    }
     keep_to(&[
         (NOT_NEGATIVE.0, NOT_NEGATIVE.1, &sizes),
         (FINITE.0, FINITE.1, &numbers),

@@ -7,7 +7,7 @@
 use crate::rigid::{BodyPart, FreeMotion, Surface};
 use crate::stepping::rows::Mover;
 use glam::DVec2;
-use halfgap_collision::{Body, BodyId, BodyState, Moving};
+use halfgap_collision::{Body, BodyId, BodyState, Motion, MovedPath, Moving};
 use halfgap_contact::InverseInertia;
 
 /// What does not change about a body.
@@ -22,6 +22,8 @@ pub(super) struct Nature {
     pub(super) is_convex: bool,
     /// Least width [m], about: of a plate that of a block of the same area and length.
     pub(super) thickness: f64,
+    /// Prescribed motion from a time [s] on of a fixed body that is moved otherwise than at constant velocities.
+    moved: Option<(MovedPath, f64)>,
 }
 
 /// Velocities, accelerations or displacements of x, y and angle.
@@ -113,12 +115,12 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    pub(super) fn new(parts: Vec<BodyPart>) -> Self {
+    pub(super) fn new(parts: Vec<BodyPart>, start: f64) -> Self {
         let courses = parts.iter().map(|BodyPart { body, state, motion, .. }| {
             let velocity = match motion {
-                Some(motion) => [motion.velocity.x, motion.velocity.y, motion.angular_velocity],
-                None if body.is_fixed() => [0.0; 3],
-                None => [state.velocity.x, state.velocity.y, state.angular_velocity],
+                Some(motion) if body.is_fixed() => motion.laws().map(|law| law.at(start).rate),
+                _ if body.is_fixed() => [0.0; 3],
+                _ => [state.velocity.x, state.velocity.y, state.angular_velocity],
             };
             Course {
                 position: state.position,
@@ -130,11 +132,14 @@ impl Bodies {
         });
         let courses: Vec<Course> = courses.collect();
         let movings = courses.iter().map(|course| Moving::from(&course.state_at(0.0, 0.0))).collect();
-        let natures = parts.into_iter().map(|BodyPart { body, free_motion, surface, .. }| {
+        let natures = parts.into_iter().map(|BodyPart { body, free_motion, state, surface, motion }| {
             let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
             let (reach, area) = (body.shape.reach(), body.shape.mass_properties().area);
             let is_convex = body.shape.is_convex();
-            Nature { reach, is_convex, thickness: 0.5 * area / reach, body, free_motion, surface }
+            let moved = motion.filter(|motion| body.is_fixed() && !motion.is_uniform());
+            let moved = moved.map(|motion| MovedPath::new(motion, state.position, state.angle, start));
+            let moved = moved.map(|path| (path, start));
+            Nature { reach, is_convex, thickness: 0.5 * area / reach, body, free_motion, surface, moved }
         });
         let natures: Vec<Nature> = natures.collect();
         let least_thickness = natures.iter().map(|nature| nature.thickness).fold(f64::INFINITY, f64::min);
@@ -146,6 +151,21 @@ impl Bodies {
             natures,
             courses,
             movings,
+        }
+    }
+
+    /// Leads bodies that are moved as they are told through a step of a length `span` [s] that begins at a time [s].
+    pub(super) fn lead(&mut self, time: f64, span: f64) {
+        for ((nature, course), moving) in self.natures.iter().zip(&mut self.courses).zip(&mut self.movings) {
+            let Some((path, start)) = &nature.moved else { continue };
+            let offset = time - start;
+            let (now, end) = (path.state_at(offset), path.state_at(offset + span));
+            let way = end.position - course.position;
+            let middle = [way.x, way.y, end.angle - course.angle].map(|way| way / span);
+            let acceleration = path.acceleration_at(offset + 0.5 * span);
+            (course.middle, course.smooth) = (middle, middle);
+            course.acceleration = [acceleration.linear.x, acceleration.linear.y, acceleration.angular];
+            (moving.velocity, moving.angular_velocity) = (now.velocity, now.angular_velocity);
         }
     }
 
@@ -294,7 +314,7 @@ mod tests {
             let state = BodyState { position, ..BodyState::default() };
             BodyPart::new(body, FreeMotion::default(), state)
         });
-        Bodies::new(parts.collect())
+        Bodies::new(parts.collect(), 0.0)
     }
 
     #[test]

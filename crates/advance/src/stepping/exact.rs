@@ -2,6 +2,7 @@
 
 use crate::stepping::rows::{Line, Mover, Roll, Row};
 use crate::stepping::sweeps::Problem as Island;
+use crate::stepping::third::Third;
 use halfgap_contact::{
     InverseInertia, Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver,
     WarmStart,
@@ -127,10 +128,19 @@ impl Exact {
         let ends = row.ends();
         let sides = ends.map(|place| self.bodies[place].map(ProblemBody));
         let [p, q] = ends.map(|place| &island.movers[place].velocity);
-        let offset = line.rate(p, q) + line.offset + back;
+        let mut offset = line.rate(p, q) + line.offset + back;
+        if let Some(Third { place, arm }) = row.third {
+            offset += arm * island.movers[place as usize].velocity[2];
+        }
+        let of_two = ProblemRow::between(sides, &line.jacobian(), offset);
+        let third =
+            row.third.and_then(|Third { place, arm }| Some((ProblemBody(self.bodies[place as usize]?), arm)));
+        let posed = match third {
+            Some((body, arm)) => Some(ProblemRow::turning(of_two, body, arm, offset)),
+            None => of_two,
+        };
         // A row of the island has a body that can move.
-        ProblemRow::between(sides, &line.jacobian(), offset)
-            .unwrap_or_else(|| ProblemRow::new(ProblemBody(0), [0.0; 3], 0.0))
+        posed.unwrap_or_else(|| ProblemRow::new(ProblemBody(0), [0.0; 3], 0.0))
     }
 
     fn add(&mut self, row: ProblemRow, impulse: f64) {

@@ -3,7 +3,11 @@
 use crate::stepping::bodies::{Bodies, Motion3};
 use crate::stepping::rows::{Mover, Row};
 use crate::stepping::settings::SteppingSettings;
-use halfgap_contact::{CollisionRow, FrictionRow, Impact, ImpactError, InverseInertia, RowKind};
+use crate::stepping::third::Third;
+use halfgap_collision::BodyId;
+use halfgap_contact::{
+    CollisionRow, CollisionThird, FrictionRow, Impact, ImpactError, InverseInertia, RowKind,
+};
 
 /// The impact law with its buffers.
 #[derive(Clone, Debug, Default)]
@@ -36,7 +40,12 @@ impl Impacts {
             let inertia = ids.map(|body| bodies.inertia(body));
             let kind = if row.is_bilateral { RowKind::Bilateral } else { RowKind::Unilateral };
             let rate = row.striking_rate(velocities);
+            let third = row.third.map(|Third { place, arm }| {
+                let body = BodyId(place);
+                CollisionThird::new(body, arm, bodies.inertia(body))
+            });
             CollisionRow {
+                third,
                 elasticity: row.elasticity,
                 velocity_tol: slow,
                 kind,
@@ -73,6 +82,10 @@ impl Impacts {
             row.normal.push(&mut p, &mut q, row.blows[0]);
             row.slip.line.push(&mut p, &mut q, row.blows[1]);
             (velocities[a], velocities[b]) = (p.velocity, q.velocity);
+            if let Some(Third { place, arm }) = row.third {
+                let inertia = bodies.inertia(BodyId(place));
+                velocities[place as usize][2] += inertia.inverse_moment * arm * row.blows[0];
+            }
         }
         Ok(())
     }

@@ -30,6 +30,14 @@ impl Islands {
             if moves(a) && moves(b) {
                 self.forest.join(a, b);
             }
+            if row.third.is_some() {
+                let mut ends = row.all_ends().filter(|&place| moves(place));
+                if let Some(first) = ends.next() {
+                    ends.for_each(|other| {
+                        self.forest.join(first, other);
+                    });
+                }
+            }
         }
         self.island_of.clear();
         self.island_of.resize(count, u32::MAX);
@@ -45,7 +53,11 @@ impl Islands {
         }
         let of_row = |row: &Row| {
             let [a, b] = row.ends();
-            if moves(a) { a } else { b }
+            match row.third {
+                Some(third) if !(moves(a) || moves(b)) => third.place as usize,
+                _ if moves(a) => a,
+                _ => b,
+            }
         };
         for row in rows {
             self.next[self.island_of[of_row(row)] as usize][1] += 1;

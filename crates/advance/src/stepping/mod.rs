@@ -3,12 +3,13 @@
 //! *Invariant*: a system is at the start of a step, and knows how its bodies go through it; a step depends on nothing but the one
 //! before.
 //!
-//! `settings` · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
-//! remembered of where they touch · `facing`: on which side · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `listing`: what contacts
+//! `settings` · `balance`: what impulses may give · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
+//! remembered of where they touch · `facing`: on which side · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `third`, `listing`: what contacts
 //! and connectors ask of velocities · `islands` · `solving`, `exact`, `sweeps`, `swept`: impulses · `impacts` · `report`: what callers are told ·
 //! `pacing`: how long steps are · `projection`: back to the gaps · `passing`: what would pass through something · `sleep` · `memory` · `striking`, `departure`, `step`:
 //! from one step to the next · `books` · `system`, `intervention`: what callers see and change.
 
+mod balance;
 mod bodies;
 mod books;
 mod contacts;
@@ -35,6 +36,7 @@ mod striking;
 mod sweeps;
 mod swept;
 mod system;
+mod third;
 mod ties;
 
 #[cfg(feature = "save")]

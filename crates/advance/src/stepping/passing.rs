@@ -83,8 +83,10 @@ impl Passing {
             while let Some(&body) = self.stopped.get(next) {
                 next += 1;
                 let body = BodyId(body);
-                for connector in ties.all.iter().filter(|connector| connector.bodies().contains(&body)) {
-                    connector.bodies().into_iter().for_each(|other| self.stop_at(bodies, other, time, span));
+                for connector in
+                    ties.all.iter().filter(|connector| connector.all_bodies().any(|one| one == body))
+                {
+                    connector.all_bodies().for_each(|other| self.stop_at(bodies, other, time, span));
                 }
                 self.meetings.retain(|meeting| !meeting.bodies.contains(&body));
                 for &pair in pairs.of(body) {

@@ -48,14 +48,14 @@ impl Shifts {
             }
             // Only what others have moved since is looked at again.
             asked.clear();
-            let moved = |row: &Row| row.ends().into_iter().any(|place| changes[place] > enough);
+            let moved = |row: &Row| row.all_ends().any(|place| changes[place] > enough);
             asked.extend((0..rows.len()).filter(|&index| moved(&rows[index])).map(|index| index as u32));
         }
         for row in rows.iter_mut() {
             let [a, b] = row.ends();
-            if changes[a] + changes[b] > 0.0 {
+            if row.all_ends().map(|place| changes[place]).sum::<f64>() > 0.0 {
                 let [p, q] = [a, b].map(|place| &movers[place].velocity);
-                row.gap += row.normal.rate(p, q);
+                row.gap += row.rate_of(movers);
                 row.slip.off += row.slip.line.rate(p, q);
             }
         }
@@ -101,19 +101,16 @@ fn lift(bodies: &Bodies, place: usize, [x, y, _]: Motion3) -> f64 {
 
 /// Gives a row the displacement by which its gap is none, or none if it is open; returns the change of the gap [m].
 fn visit(row: &mut Row, shifts: &mut [Mover], changes: &mut [f64]) -> f64 {
-    let [a, b] = row.ends();
-    let (mut p, mut q) = (shifts[a], shifts[b]);
-    let line = &mut row.normal;
-    let lacking = line.rate(&p.velocity, &q.velocity) + row.gap;
-    let wanted = line.before - lacking * line.weight;
-    let impulse = if row.is_bilateral { wanted } else { wanted.max(0.0) } - line.before;
+    let lacking = row.rate_of(shifts) + row.gap;
+    let before = row.normal.before;
+    let wanted = before - lacking * row.normal.weight;
+    let impulse = if row.is_bilateral { wanted } else { wanted.max(0.0) } - before;
     if impulse == 0.0 {
         return 0.0;
     }
-    line.push(&mut p, &mut q, impulse);
-    line.before += impulse;
-    (shifts[a], shifts[b]) = (p, q);
-    let change = impulse.abs() * line.compliance;
-    (changes[a], changes[b]) = (changes[a] + change, changes[b] + change);
+    row.push(shifts, impulse);
+    row.normal.before += impulse;
+    let change = impulse.abs() * row.normal.compliance;
+    row.all_ends().for_each(|place| changes[place] += change);
     change
 }

@@ -99,7 +99,7 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
         }
     }
     let tied = ties.all.iter().zip(&ties.memory).enumerate();
-    for (index, (connector, tie)) in tied.filter(|(_, (tie, _))| tie.bodies().into_iter().all(sleeps)) {
+    for (index, (connector, tie)) in tied.filter(|(_, (tie, _))| tie.all_bodies().all(sleeps)) {
         for (direction, &force) in tie.forces.iter().enumerate().filter(|&(_, &force)| force != 0.0) {
             let sample = ties.measure(bodies, index, direction);
             let [x, y, turning, ..] = sample.kinematics.jacobian;

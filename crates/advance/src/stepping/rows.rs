@@ -1,8 +1,11 @@
 //! The rows of a step: what contacts and connectors ask of the velocities with which bodies go through it.
 //!
-//! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it.
+//! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it. Few rows
+//! act on the rotation of a third.
 
+use crate::stepping::balance::Balance;
 use crate::stepping::bodies::Motion3;
+use crate::stepping::third::Third;
 use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_contact::InverseInertia;
@@ -58,6 +61,13 @@ impl Line {
             + (p.inverse_moment * a * a + q.inverse_moment * b * b);
         let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
         Self { x, y, a, b, compliance, weight, offset, ..Self::default() }
+    }
+
+    /// The same where a third body takes part, too, with its square [1/kg].
+    pub(super) fn with_square(self, square: f64) -> Self {
+        let compliance = self.compliance + square;
+        let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
+        Self { compliance, weight, ..self }
     }
 
     /// True if there is such a row.
@@ -178,6 +188,7 @@ pub(super) struct Lengths {
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Row {
     pub(super) places: [u32; 2],
+    pub(super) third: Option<Third>,
     /// The rate may neither be negative nor positive.
     pub(super) is_bilateral: bool,
     /// It carried a force in the last step.
@@ -210,7 +221,13 @@ impl Row {
         self.places.map(|place| place as usize)
     }
 
-    /// Its bodies, among so many.
+    /// The places of all bodies on which it acts.
+    #[inline(always)]
+    pub(super) fn all_ends(&self) -> impl Iterator<Item = usize> + use<> {
+        self.ends().into_iter().chain(self.third.map(|third| third.place as usize))
+    }
+
+    /// Its two bodies, among so many.
     pub(super) fn bodies(&self, count: usize) -> [BodyId; 2] {
         self.places.map(|place| if place as usize == count { BodyId::WORLD } else { BodyId(place) })
     }
@@ -225,7 +242,28 @@ impl Row {
     #[inline]
     pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
         let [a, b] = self.ends();
-        self.normal.rate(&velocities[a], &velocities[b])
+        let of_two = self.normal.rate(&velocities[a], &velocities[b]);
+        self.third.map_or(of_two, |third| of_two + third.rate(velocities))
+    }
+
+    /// J v [m/s] along the normal of velocities that are looked for.
+    #[inline]
+    pub(super) fn rate_of(&self, movers: &[Mover]) -> f64 {
+        let [p, q] = self.ends().map(|place| &movers[place].velocity);
+        let of_two = self.normal.rate(p, q);
+        self.third.map_or(of_two, |third| of_two + third.arm * movers[third.place as usize].velocity[2])
+    }
+
+    /// Adds what an impulse along the normal changes to the velocities.
+    #[inline]
+    pub(super) fn push(&self, movers: &mut [Mover], impulse: f64) {
+        let [a, b] = self.ends();
+        let (mut p, mut q) = (movers[a], movers[b]);
+        self.normal.push(&mut p, &mut q, impulse);
+        (movers[a], movers[b]) = (p, q);
+        if let Some(third) = &self.third {
+            third.push(movers, impulse);
+        }
     }
 
     /// J v [m/s] along the normal, or the speed of the impact against it if that is more.
@@ -244,10 +282,8 @@ impl Row {
     /// Adds to the balance of some rows what impulses along the normal and along the surface do, if `rates` are the sums of those before and
     /// after them.
     pub(super) fn weigh(&self, [normal, slip]: [f64; 2], rates: [f64; 2], balance: &mut Balance) {
-        for done in [0.5 * normal * rates[0], slip * (0.5 * rates[1] - self.slip.running)] {
-            balance.work += done;
-            balance.size += done.abs();
-        }
+        balance.add(0.5 * normal * rates[0]);
+        balance.add(slip * (0.5 * rates[1] - self.slip.running));
     }
 
     /// Adds to the velocities what the impulses of the row change.
@@ -260,27 +296,9 @@ impl Row {
             self.slip.line.push(&mut p, &mut q, self.slip.line.impulse);
         }
         (movers[a], movers[b]) = (p, q);
-    }
-}
-
-/// Work [J] of the impulses of some rows, seen from what drives them, and the sum of its parts without their signs.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Balance {
-    work: f64,
-    size: f64,
-}
-
-/// Share of the energy before by which a solution may add to it [-]: the scheme is of second order, and smooth motions go to and fro about
-/// their energy. Rows that nothing can do together, such as that a body be to both sides of a wall, have solutions that are as large as
-/// they are nearly parallel.
-const EXPLOSION: f64 = 1e-2;
-/// Share of the parts of a work that is rounding [-].
-const ROUNDING: f64 = 1e-12;
-
-impl Balance {
-    /// True if that is more than a solution may give to bodies that had an energy [J] before.
-    pub(super) fn explodes(&self, energy: f64) -> bool {
-        self.work > EXPLOSION * energy + ROUNDING * self.size
+        if let Some(third) = &self.third {
+            third.push(movers, self.normal.impulse);
+        }
     }
 }
 

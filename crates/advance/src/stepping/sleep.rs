@@ -74,8 +74,9 @@ impl Sleep {
                     self.rouse(if a == next { b.index() } else { a.index() }, &mut woken);
                 }
             }
-            for connector in ties.all.iter().filter(|connector| connector.bodies().contains(&next)) {
-                for other in connector.bodies().into_iter().filter(|&other| !bodies.is_fixed(other)) {
+            for connector in ties.all.iter().filter(|connector| connector.all_bodies().any(|one| one == next))
+            {
+                for other in connector.all_bodies().filter(|&other| !bodies.is_fixed(other)) {
                     self.rouse(other.index(), &mut woken);
                 }
             }
@@ -115,7 +116,7 @@ impl Sleep {
         }
         let drives = |row: &Row| {
             row.slip.running != 0.0
-                || row.ends().iter().any(|&place| {
+                || row.all_ends().any(|place| {
                     place < bodies.count()
                         && bodies.natures[place].body.is_fixed()
                         && bodies.courses[place].middle != [0.0; 3]

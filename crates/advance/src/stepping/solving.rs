@@ -2,9 +2,10 @@
 //!
 //! *Invariant*: a solution gives bodies no more energy than it may, or it is found anew by sweeps.
 
+use crate::stepping::balance::Balance;
 use crate::stepping::bodies::Motion3;
 use crate::stepping::exact::{Effort, Exact};
-use crate::stepping::rows::{Balance, Mover, Rows};
+use crate::stepping::rows::{Mover, Rows};
 use crate::stepping::sweeps::{Enough, Problem, Sweeps};
 
 /// Number of rows up to which an island is solved exactly, by whatever it takes.
@@ -34,7 +35,7 @@ fn explodes(problem: &Problem<'_>, members: &[u32], free: &[Motion3]) -> bool {
     for &row in list.iter() {
         let row = &rows[row as usize];
         let [p, q] = row.ends().map(|place| &movers[place].velocity);
-        let closing = row.rate(before) + row.normal.rate(p, q);
+        let closing = row.rate(before) + row.rate_of(movers);
         let slipping = row.slip_rate(before) + row.slip.line.rate(p, q);
         row.weigh([row.normal.impulse, row.slip.line.impulse], [closing, slipping], &mut balance);
     }

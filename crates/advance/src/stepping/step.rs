@@ -129,6 +129,7 @@ impl Stepper {
         from: From,
         (books, report): (&mut StepBooks, &mut ImpactReport),
     ) {
+        scene.bodies.lead(time, span);
         self.kicks.find(&scene.bodies, &scene.laws, time);
         self.fall = span * self.kicks.fastest();
         scene.bodies.set_kick(if from.is_start() { span } else { from.kick(span) });

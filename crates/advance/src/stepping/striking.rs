@@ -1,11 +1,11 @@
 //! Impacts at the start of a step: when there is one, and what sets out after it.
 
 use crate::rigid::ImpactReport;
+use crate::stepping::balance::Balance;
 use crate::stepping::bodies::{Bodies, Motion3};
 use crate::stepping::books::StepBooks;
 use crate::stepping::kicks::kicked;
 use crate::stepping::report;
-use crate::stepping::rows::Balance;
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::solving::LARGEST_SMALL;
 use crate::stepping::step::{From, SLOW_STEPS, Scene, Stepper};

@@ -76,6 +76,8 @@ pub(super) struct Sweeps {
     changes: Vec<f64>,
     /// Rows of the present sweep.
     asked: Vec<u32>,
+    /// Rows that act on three bodies. They are held after all others.
+    of_three: Vec<u32>,
 }
 
 impl Sweeps {
@@ -87,6 +89,11 @@ impl Sweeps {
         for row in &self.rows {
             row.push(movers, row.impulses);
         }
+        let of_three = std::mem::take(&mut self.of_three);
+        for &row in &of_three {
+            let row = &rows[row as usize];
+            row.push(movers, row.normal.impulse);
+        }
         for &roll in rolling.iter() {
             let Roll { row, line, .. } = &rolls[roll as usize];
             let [a, b] = rows[*row as usize].ends();
@@ -94,15 +101,18 @@ impl Sweeps {
             line.push(&mut p, &mut q, line.impulse);
             (movers[a], movers[b]) = (p, q);
         }
-        let is_solved = self.sweep((movers, members), enough, |swept, movers| {
+        let is_solved = self.sweep((movers, members), enough, |swept, movers, changes| {
+            let held = hold_three(rows, &of_three, movers, changes);
             if rolling.is_empty() {
-                return;
+                return held;
             }
             for swept in swept {
                 rows[list[swept.listed as usize] as usize].normal.impulse = swept.impulses[0];
             }
             hold_rolling(rows, (rolls, rolling), movers);
+            held
         });
+        self.of_three = of_three;
         self.lose(movers);
         for swept in &self.rows {
             let row = &mut rows[list[swept.listed as usize] as usize];
@@ -119,7 +129,8 @@ impl Sweeps {
         movers: &[Mover],
         before: &[Motion3],
     ) {
-        let Self { depths, firsts, asked, order, .. } = self;
+        let Self { depths, firsts, asked, order, of_three, .. } = self;
+        of_three.clear();
         depths.resize(movers.len(), 0);
         members.iter().for_each(|&body| depths[body as usize] = 0);
         firsts.clear();
@@ -136,6 +147,7 @@ impl Sweeps {
             }
             firsts[depth as usize] += 1;
             asked.push(depth);
+            of_three.extend(rows[row as usize].third.map(|_| row));
         }
         let mut next = 0;
         for first in firsts.iter_mut() {
@@ -152,7 +164,9 @@ impl Sweeps {
         self.rows.extend(
             order
                 .iter()
-                .map(|&listed| Swept::of(&rows[list[listed as usize] as usize], listed, movers, before)),
+                .map(|&listed| (&rows[list[listed as usize] as usize], listed))
+                .filter(|(row, _)| row.third.is_none())
+                .map(|(row, listed)| Swept::of(row, listed, movers, before)),
         );
     }
 
@@ -183,7 +197,7 @@ impl Sweeps {
         &mut self,
         (movers, members): (&mut [Mover], &[u32]),
         enough: Enough,
-        mut hold_rolling: impl FnMut(&[Swept], &mut [Mover]),
+        mut hold_others: impl FnMut(&[Swept], &mut [Mover], &mut [f64]) -> f64,
     ) -> bool {
         let Self { rows, changes, asked, .. } = self;
         let mut left = enough.visits * rows.len();
@@ -193,19 +207,19 @@ impl Sweeps {
             let change = row.visit(movers);
             note(row, changes, change);
         }
-        hold_rolling(rows, movers);
+        let mut held = hold_others(rows, movers, changes);
         let mut last = f64::INFINITY;
         loop {
             // Each round goes back over the rows that are asked, and forth over those that are then.
             for is_forward in [false, true] {
                 ask(rows, (members, changes), enough.residual, asked);
-                if asked.is_empty() {
+                if asked.is_empty() && held <= enough.residual {
                     return true;
                 }
                 if asked.len() >= left {
                     return false;
                 }
-                left -= asked.len();
+                left -= asked.len().max(1);
                 let mut visit = |index: u32| {
                     let row = &mut rows[index as usize];
                     if !is_forward {
@@ -219,7 +233,7 @@ impl Sweeps {
                 } else {
                     asked.iter().rev().for_each(|&index| visit(index));
                 }
-                hold_rolling(rows, movers);
+                held = hold_others(rows, movers, changes);
             }
             last = go_on(rows, asked, movers, changes, last);
         }
@@ -275,6 +289,21 @@ fn ask(rows: &[Swept], (members, changes): (&[u32], &mut [f64]), residual: f64, 
         let change = &mut changes[body as usize];
         *change = if *change > 0.5 * residual { 0.0 } else { *change };
     }
+}
+
+/// Lets rows of three bodies do what is asked of them; returns the largest change of a rate by that [m/s].
+fn hold_three(rows: &mut [Row], of_three: &[u32], movers: &mut [Mover], changes: &mut [f64]) -> f64 {
+    let mut most = 0.0f64;
+    for &row in of_three {
+        let row = &mut rows[row as usize];
+        let impulse = -(row.rate_of(movers) + row.normal.offset) * row.normal.weight;
+        row.push(movers, impulse);
+        row.normal.impulse += impulse;
+        let change = (impulse * row.normal.compliance).abs();
+        row.all_ends().for_each(|place| changes[place] += change);
+        most = most.max(change);
+    }
+    most
 }
 
 /// Holds back what rolls.

@@ -53,7 +53,7 @@ impl SteppingSystem {
         let RigidParts { bodies, connectors, force_laws, excluded, pairs } = parts;
         let count = bodies.len();
         let books = StepBooks::new(force_laws.len());
-        let bodies = Bodies::new(bodies);
+        let bodies = Bodies::new(bodies, start.seconds());
         let laws = ForceLaws::new(force_laws, count, &Snapshot::new(start.seconds(), &bodies.movings));
         let sleep = Sleep::new(count);
         let scene = Scene {

@@ -2,7 +2,8 @@
 
 use crate::stepping::bodies::Bodies;
 use crate::stepping::rows::{Lengths, Line, Row, Rows, Slip, Source};
-use halfgap_collision::{Connector, ConnectorKind, ConnectorSample, RailHint};
+use crate::stepping::third::Third;
+use halfgap_collision::{Connector, ConnectorKind, ConnectorSample, Moving, RailHint, Surroundings};
 
 /// What is remembered of a connector.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,7 +50,10 @@ impl Ties {
     pub(super) fn measure(&self, bodies: &Bodies, index: usize, direction: usize) -> ConnectorSample {
         let connector = &self.all[index];
         let [a, b] = connector.bodies().map(|body| bodies.moving(body));
-        connector.measure_near(direction, &a, &b, self.memory[index].hint.as_ref())
+        let carrier = connector.third().map_or(Moving::BACKGROUND, |(body, _)| bodies.moving(body));
+        let hint = self.memory[index].hint.as_ref();
+        let surroundings = Surroundings { carrier: &carrier, hint, ..Surroundings::default() };
+        connector.measure_in(direction, [&a, &b], &surroundings)
     }
 
     /// Lists the rows of the connectors of bodies that are awake.
@@ -65,10 +69,14 @@ impl Ties {
             let tie = &self.memory[index];
             let ids = connector.bodies();
             // Bodies that are tied sleep together.
-            if ids.iter().all(|&body| bodies.is_fixed(body) || is_asleep(body.index())) {
+            if connector.all_bodies().all(|body| bodies.is_fixed(body) || is_asleep(body.index())) {
                 continue;
             }
             let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
+            let third = connector.third().map(|(body, arm)| Third { place: body.0, arm });
+            let square = third.map_or(0.0, |Third { place, arm }| {
+                bodies.inertia_in_step(place as usize).inverse_moment * arm * arm
+            });
             let is_bilateral = connector.is_bilateral();
             for direction in 0..connector.row_count() {
                 let sample = self.measure(bodies, index, direction);
@@ -76,11 +84,12 @@ impl Ties {
                 let offset = gap / span + 0.5 * span * sample.kinematics.gamma;
                 let mut row = Row {
                     places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
+                    third,
                     is_bilateral,
                     presses: tie.presses,
                     touches: is_bilateral || tie.presses || sample.gap <= slack,
                     roll: None,
-                    normal: Line::new(sample.kinematics.jacobian, inertia, offset),
+                    normal: Line::new(sample.kinematics.jacobian, inertia, offset).with_square(square),
                     slip: Slip::default(),
                     gap: sample.gap,
                     gamma: sample.kinematics.gamma,

@@ -260,19 +260,17 @@ fn a_wrong_scene_ends_with_2_and_shows_the_line() {
 }
 
 #[test]
-fn what_is_not_supported_yet_is_refused_with_its_line() {
+fn a_motion_of_a_body_that_is_not_fixed_is_refused_with_its_line() {
     let folder = Folder::new("unsupported");
     let scene = folder.write(
         "scene.toml",
-        &FLIGHT.replace(
-            "mass = 2.0\nvelocity = [1.0, 0.0]",
-            "fixed = true\nmotion = { angular_velocity = 1.0 }",
-        ),
+        &FLIGHT
+            .replace("mass = 2.0\nvelocity = [1.0, 0.0]", "mass = 1.0\nmotion = { angular_velocity = 1.0 }"),
     );
     let output = halfgap(&["run", &scene]);
     assert_eq!(output.status.code(), Some(2));
     insta::assert_snapshot!(folder.plain(&output.stderr), @r"
-    error: scene.toml:11: body[0].motion: a fixed body that moves is not supported by events yet: set `strategy` to `steps` in `[run]`
+    error: scene.toml:11: body[0].motion: only a fixed body is moved: give it `fixed = true`, or a `velocity` instead
         |
      11 | motion = { angular_velocity = 1.0 }
         | ^

@@ -167,6 +167,11 @@ impl Connector {
         }
     }
 
+    /// Ids of all bodies that its rows depend on: both ends, and the third body, if there is one.
+    pub fn all_bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
+        self.bodies().into_iter().chain(self.third().map(|(body, _)| body))
+    }
+
     /// Number of rows.
     #[must_use]
     #[inline]

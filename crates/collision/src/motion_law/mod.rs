@@ -9,7 +9,7 @@
 mod body_motion;
 mod table;
 
-pub use body_motion::BodyMotion;
+pub use body_motion::{BodyMotion, MovedPath};
 pub use table::{MotionTable, TableError};
 
 use std::f64::consts::TAU;
@@ -114,6 +114,13 @@ impl MotionLaw {
         }
     }
 
+    /// True for a constant rate.
+    #[must_use]
+    #[inline]
+    pub fn is_uniform(&self) -> bool {
+        matches!(self, Self::Uniform(_))
+    }
+
     /// True if all numbers of the law are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
@@ -173,7 +180,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn laws() -> impl Strategy<Value = MotionLaw> {
+    pub(super) fn laws() -> impl Strategy<Value = MotionLaw> {
         let oscillation = (-2.0..2.0, 0.1..3.0, -4.0..4.0).prop_map(|(amplitude, frequency, phase)| {
             MotionLaw::Oscillating(Oscillation { amplitude, frequency, phase })
         });

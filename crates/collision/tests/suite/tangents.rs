@@ -133,7 +133,8 @@ fn the_record_has_the_tangent_and_the_slip_of_the_row() {
         let bodies = [&moments[0], &moments[1]];
         let side = |id| Participant { body: BodyId(id), site: None };
         let (primary, normal) = (side(0), side(1));
-        let parties = Parties { primary, normal, bilateral: false, detector: Detector::EdgeEdge };
+        let parties =
+            Parties { primary, normal, third: None, bilateral: false, detector: Detector::EdgeEdge };
         let (sample, radii) = (case.sample(0.0), case.radii());
         let record = Collision::new(parties, (&sample, radii), bodies, tolerances, 1.0, 0.0);
         // The record measures slip at the two points of the outlines, as if no gap were kept between them.

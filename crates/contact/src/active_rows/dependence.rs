@@ -121,6 +121,9 @@ impl ActiveRows {
             let part: f64 = row.iter().map(|entry| entry * entry).sum();
             self.gross[body as usize] += share * share * part;
         }
+        if let Some(third) = self.thirds.of(place) {
+            self.gross[third.body as usize] += share * share * third.entry * third.entry;
+        }
     }
 }
 

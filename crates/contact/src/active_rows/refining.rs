@@ -121,6 +121,10 @@ impl ActiveRows {
             let sides = bodies.iter().zip(sides).filter(|(body, _)| **body != NONE);
             product[index as usize] = sides.map(of_side).sum();
         }
+        for third in self.thirds.all() {
+            let turning = self.motion[third.body as usize][2];
+            product[self.order.rows[third.place] as usize] += third.entry * turning;
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The structure of active rows: the rows that share a body, the order of elimination, and the layout of the factor. It
 //! does not change while the same rows are active.
 
-use super::{ActiveRows, NONE};
+use super::{ActiveRows, NONE, ThirdSide};
 use crate::problem::InverseInertia;
 
 /// An earlier row on a common body.
@@ -23,8 +23,23 @@ impl ActiveRows {
     ///
     /// If a row names a body that does not exist.
     pub fn set_structure(&mut self, inertia: &[InverseInertia], rows: &[[Option<u32>; 2]]) {
+        self.set_structure_with_thirds(inertia, rows, &[]);
+    }
+
+    /// Does as [`set_structure`](Self::set_structure), with rows some of which have a third side; at most one each.
+    ///
+    /// # Panics
+    ///
+    /// If a row names a body, or a third side a row or body, that does not exist.
+    pub fn set_structure_with_thirds(
+        &mut self,
+        inertia: &[InverseInertia],
+        rows: &[[Option<u32>; 2]],
+        thirds: &[ThirdSide],
+    ) {
         self.body_count = inertia.len();
-        self.find_order(inertia, rows);
+        self.find_order(inertia, rows, thirds);
+        self.take_thirds(inertia, thirds);
         self.bodies.clear();
         self.root.clear();
         for place in 0..rows.len() {
@@ -50,12 +65,15 @@ impl ActiveRows {
         self.motion.resize(self.body_count, [0.0; 3]);
     }
 
-    fn find_order(&mut self, inertia: &[InverseInertia], rows: &[[Option<u32>; 2]]) {
+    fn find_order(&mut self, inertia: &[InverseInertia], rows: &[[Option<u32>; 2]], thirds: &[ThirdSide]) {
         self.start.clear();
         self.start.push(0);
         self.column.clear();
-        for &row in rows {
+        for (index, &row) in rows.iter().enumerate() {
             self.column.extend(movable(inertia, row).into_iter().filter(|&body| body != NONE));
+            let own = thirds.iter().filter(|third| third.row as usize == index);
+            let turning = own.filter(|third| inertia[third.body as usize].inverse_moment > 0.0);
+            self.column.extend(turning.map(|third| third.body));
             self.start.push(self.column.len());
         }
         self.order.prepare_narrow(&self.start, &self.column, inertia.len());
@@ -93,13 +111,17 @@ impl ActiveRows {
         let of_row = |place: usize| self.shared_start[2 * place]..self.shared_start[2 * place + 2];
         let place_of = |shared: &Shared| shared.side as usize / 2;
         let rows = 0..self.bodies.len();
-        let first = |place| self.shared[of_row(place)].iter().map(place_of).fold(place, usize::min);
+        let first = |place| {
+            let of_thirds = self.thirds.first(place, &self.bodies);
+            self.shared[of_row(place)].iter().map(place_of).fold(of_thirds, usize::min)
+        };
         self.factor.lay_out(rows.clone().map(first));
         for place in rows {
             for shared in &mut self.shared[of_row(place)] {
                 shared.position = self.factor.position(place, place_of(shared)) as u32;
             }
         }
+        self.list_crossings();
     }
 }
 

@@ -173,6 +173,9 @@ impl ActiveRows {
             }
             rates[self.order.rows[place] as usize] = rate;
         }
+        for (&body, side) in bodies.iter().zip(&sides).filter(|(body, _)| **body != NONE) {
+            self.add_third_rates(body, side[2], rates);
+        }
     }
 
     /// Adds what a force on the bodies of a row changes of their accelerations, along a direction of its own.

@@ -20,6 +20,8 @@ pub(super) struct Couplings {
     diagonal: Vec<f64>,
     /// The movable bodies of each row.
     bodies: Vec<[u32; 2]>,
+    /// The rows that turn a third body, with it.
+    thirds: Vec<(u32, u32)>,
     /// Each movable body with each of its rows, sorted.
     of_bodies: Vec<(u32, u32)>,
 }
@@ -30,13 +32,20 @@ impl Couplings {
         self.bodies.clear();
         self.bodies
             .extend(rows.iter().map(|row| row.movable_bodies().map(|body| body.map_or(NONE, |id| id.0))));
+        let third = |(row, data): (usize, &CollisionRow)| Some((row as u32, data.movable_third()?.0));
+        self.thirds.clear();
+        self.thirds.extend(rows.iter().enumerate().filter_map(third));
         self.list_rows_of_bodies();
         self.start.clear();
         self.start.push(0);
         self.entries.clear();
         self.diagonal.clear();
-        for (row, &bodies) in rows.iter().zip(&self.bodies) {
-            let [first, second] = bodies.map(|body| rows_of(&self.of_bodies, body));
+        for (index, row) in rows.iter().enumerate() {
+            if let Ok(at) = self.thirds.binary_search_by_key(&(index as u32), |&(row, _)| row) {
+                self.add_row_of_three(rows, index, self.thirds[at].1);
+                continue;
+            }
+            let [first, second] = self.bodies[index].map(|body| rows_of(&self.of_bodies, body));
             let (mut p, mut q) = (first.iter().peekable(), second.iter().peekable());
             // Each list ascends; a row on both bodies is named in both.
             while let Some(next) = least(p.peek().map(|&&(_, row)| row), q.peek().map(|&&(_, row)| row)) {
@@ -49,12 +58,26 @@ impl Couplings {
         }
     }
 
+    /// Adds the entries of a row that turns a third body.
+    fn add_row_of_three(&mut self, rows: &[CollisionRow], index: usize, third: u32) {
+        let [a, b] = self.bodies[index];
+        let of_all = [a, b, third].into_iter().flat_map(|body| rows_of(&self.of_bodies, body));
+        let mut reached: Vec<u32> = of_all.map(|&(_, row)| row).collect();
+        reached.sort_unstable();
+        reached.dedup();
+        let row = &rows[index];
+        self.entries.extend(reached.into_iter().map(|next| (next, row.coupling(&rows[next as usize]))));
+        self.start.push(self.entries.len());
+        self.diagonal.push(row.coupling(row));
+    }
+
     fn list_rows_of_bodies(&mut self) {
         self.of_bodies.clear();
         for (row, bodies) in self.bodies.iter().enumerate() {
             let movable = bodies.iter().filter(|body| **body != NONE);
             self.of_bodies.extend(movable.map(|&body| (body, row as u32)));
         }
+        self.of_bodies.extend(self.thirds.iter().map(|&(row, body)| (body, row)));
         self.of_bodies.sort_unstable();
         self.of_bodies.dedup();
     }
@@ -71,7 +94,7 @@ impl Couplings {
             .map(|&(other, value)| (other as usize, value))
     }
 
-    /// Change of a row's own rate per impulse [1/kg]; 0 if neither of its bodies can move.
+    /// Change of a row's own rate per impulse [1/kg]; 0 if none of its bodies can move.
     pub(super) fn diagonal(&self, row: usize) -> f64 {
         self.diagonal[row]
     }

@@ -252,14 +252,17 @@ impl Impact {
     fn find_bad_row(&self) -> Option<(usize, &'static str)> {
         let rule = |row: &CollisionRow| {
             let sum = row.rate + row.velocity_tol + row.response.iter().sum::<f64>();
-            let is_finite = (sum + row.jacobian.iter().sum::<f64>()).is_finite();
+            let (j, response) = row.third.map_or((0.0, 0.0), |third| (third.jacobian, third.response));
+            let is_finite = (sum + row.jacobian.iter().sum::<f64>() + j + response).is_finite();
             if !row.kind.is_plain() {
                 Some(words::PLAIN_ONLY)
             } else if !is_finite {
                 Some(words::FINITE_ONLY)
             } else if !(0.0..=1.0).contains(&row.elasticity) {
                 Some(words::ELASTICITY_RANGE)
-            } else if row.jacobian.iter().zip(&row.response).any(|(entry, response)| entry * response < 0.0) {
+            } else if j * response < 0.0
+                || row.jacobian.iter().zip(&row.response).any(|(entry, response)| entry * response < 0.0)
+            {
                 Some(words::RESPONSE_SIGN)
             } else {
                 None

@@ -155,7 +155,7 @@ impl Impact {
         while let Some(row) = doubtful.pop() {
             let is_opposed =
                 |body: &Option<BodyId>| body.is_none_or(|body| self.is_opposed(row, body, parts));
-            if parts[row] == Part::Pressed && !self.rows[row].movable_bodies().iter().all(is_opposed) {
+            if parts[row] == Part::Pressed && !self.is_opposed_everywhere(row, is_opposed) {
                 parts[row] = Part::None;
                 left -= 1;
                 let others = self.couplings.row(row).map(|(other, _)| other);
@@ -163,6 +163,12 @@ impl Impact {
             }
         }
         left > 0
+    }
+
+    /// Whether a row is opposed on each body that it moves.
+    fn is_opposed_everywhere(&self, row: usize, is_opposed: impl Fn(&Option<BodyId>) -> bool) -> bool {
+        let row = &self.rows[row];
+        row.movable_bodies().iter().all(&is_opposed) && is_opposed(&row.movable_third())
     }
 
     /// Whether pressed rows and connectors may balance a pressed row on a body. A connector may always; pressed rows if one
@@ -218,12 +224,17 @@ impl Impact {
 
 /// Change of the velocity of one body per impulse along a row: x, y [1/kg], turn [rad/(kg m)].
 fn push_on(row: &CollisionRow, body: BodyId) -> [f64; 3] {
-    sum_on(row, body, &row.response)
+    let [x, y, turn] = sum_on(row, body, &row.response);
+    let third = row.third.filter(|third| third.body == body);
+    third.map_or([x, y, turn], |third| [x, y, turn + third.response])
 }
 
 /// Rate of a row by the velocity of one body alone.
 fn along(row: &CollisionRow, body: BodyId, velocity: [f64; 3]) -> f64 {
-    sum_on(row, body, &row.jacobian).iter().zip(velocity).map(|(entry, velocity)| entry * velocity).sum()
+    let [x, y, turn] = sum_on(row, body, &row.jacobian);
+    let third = row.third.filter(|third| third.body == body);
+    let turn = third.map_or(turn, |third| turn + third.jacobian);
+    [x, y, turn].iter().zip(velocity).map(|(entry, velocity)| entry * velocity).sum()
 }
 
 /// The three entries of a row that belong to one body.

@@ -54,20 +54,24 @@ pub(super) struct NearRows {
     shares: Vec<Twofold>,
 }
 
-/// Direction in which a row moves its two bodies.
+/// Direction in which a row moves its bodies.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Direction {
     bodies: [u32; 2],
     /// J M^-1/2 [1/sqrt(kg)].
     entries: [f64; 6],
+    /// The third body of the row, and the entry of its rotation.
+    third: Option<(u32, f64)>,
 }
 
 impl Direction {
     /// Of coefficient and response, J and J/m, each entry is the geometric mean with the sign of J.
     fn new(row: &CollisionRow) -> Self {
-        let entry = |k: usize| (row.jacobian[k] * row.response[k]).max(0.0).sqrt().copysign(row.jacobian[k]);
-        Self { bodies: row.bodies.map(|body| body.0), entries: std::array::from_fn(entry) }
+        let mean = |j: f64, response: f64| (j * response).max(0.0).sqrt().copysign(j);
+        let entry = |k: usize| mean(row.jacobian[k], row.response[k]);
+        let third = row.third.map(|third| (third.body.0, mean(third.jacobian, third.response)));
+        Self { bodies: row.bodies.map(|body| body.0), entries: std::array::from_fn(entry), third }
     }
 
     /// Entry of A of two rows [1/kg].
@@ -81,7 +85,22 @@ impl Direction {
                 }
             }
         }
-        sum
+        if self.third.is_some() || other.third.is_some() { sum + self.product_by_thirds(other) } else { sum }
+    }
+
+    /// The part of the entry of A of two rows that goes through a third body of either.
+    fn product_by_thirds(&self, other: &Self) -> Twofold {
+        let mut sum = Twofold::default();
+        for (of, others) in [(self, other), (other, self)] {
+            let Some((body, entry)) = of.third else { continue };
+            for side in (0..2).filter(|&side| others.bodies[side] == body) {
+                sum = sum + Twofold::from(entry) * Twofold::from(others.entries[3 * side + 2]);
+            }
+        }
+        match (self.third, other.third) {
+            (Some((p, own)), Some((q, theirs))) if p == q => sum + Twofold::from(own) * Twofold::from(theirs),
+            _ => sum,
+        }
     }
 }
 

@@ -42,6 +42,7 @@ impl Touch {
             bodies: self.bodies.map(|body| BodyId(body as u32)),
             jacobian,
             response: std::array::from_fn(|k| jacobian[k] * side(k).inverse[k % 3]),
+            third: None,
             elasticity: self.elasticity,
             velocity_tol: 1e-9,
             kind: RowKind::Unilateral,

@@ -4,6 +4,7 @@ mod friction;
 mod impact_found;
 mod impact_laws;
 mod impact_rows;
+mod impact_thirds;
 mod kinds;
 mod laws;
 #[cfg(feature = "json")]

@@ -11,11 +11,11 @@ use self::bodies::Bodies;
 use crate::builder::{BodySpec, WorldBuilder};
 use crate::run_error::RunError;
 use crate::scene::{
-    BodyData, EdgeData, FieldPath, ForceData, PairData, PathData, Scene, SceneError, ShapeData,
+    BodyData, EdgeData, FieldPath, ForceData, MotionData, PairData, PathData, Scene, SceneError, ShapeData,
 };
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
-use halfgap_advance::rigid::{PairRule, Surface, UniformMotion};
+use halfgap_advance::rigid::{PairRule, Surface};
 use halfgap_collision::{BodyId, BodyState};
 use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
 
@@ -73,10 +73,14 @@ impl WorldBuilder {
 fn collect(scene: &Scene) -> Result<WorldBuilder, SceneError> {
     let mut builder = WorldBuilder::new(settings::of_run(&scene.run));
     for (index, body) in scene.bodies.iter().enumerate() {
-        builder.add(body_spec(body).map_err(|error| {
-            let field = FieldPath::top().field("body").element(index).field("shape");
-            SceneError::new(field, error.to_string())
-        })?);
+        let field = FieldPath::top().field("body").element(index);
+        let spec = body_spec(body)
+            .map_err(|error| SceneError::new(field.clone().field("shape"), error.to_string()))?;
+        let motion = body.motion.as_ref().map(MotionData::to_motion).transpose();
+        let motion = motion.map_err(|(table, error)| {
+            SceneError::new(field.field("motion").field("table").field(table), error.to_string())
+        })?;
+        builder.add(BodySpec { motion, ..spec });
     }
     let bodies = Bodies::of(scene);
     for (index, force) in scene.forces.iter().enumerate() {
@@ -141,10 +145,7 @@ fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {
             rolling_resistance: body.rolling_resistance,
             tangential_elasticity: body.tangential_elasticity,
         },
-        motion: body.motion.as_ref().map(|motion| UniformMotion {
-            velocity: motion.velocity.unwrap_or_default().into(),
-            angular_velocity: motion.angular_velocity.unwrap_or_default(),
-        }),
+        motion: None,
     };
     Ok(match body.origin {
         Some(origin) => spec.with_origin(origin.into()),
@@ -197,9 +198,7 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
     let place = match &error {
         WorldError::DoubleName { name } | WorldError::BadName { name } => body(name, &|_| "name"),
         WorldError::TooLarge { quantity: "gravity", .. } => strongest_gravity(scene),
-        WorldError::NeedsSteps { body: name, .. } | WorldError::FrictionWithoutForces { body: name } => {
-            body(name, &|_| "name")
-        }
+        WorldError::FrictionWithoutForces { body: name } => body(name, &|_| "name"),
         WorldError::BadNumber { body: name, quantity, .. }
         | WorldError::TooLarge { body: name, quantity, .. } => body(name, &|body| field_of(body, quantity)),
         WorldError::Overlap { second, .. } | WorldError::CannotLift { second, .. } => body(second, &place_of),
@@ -215,8 +214,14 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         | WorldError::CannotConnect { connector, .. }
         | WorldError::BadConnector { connector, .. }
         | WorldError::FarConnector { connector, .. }
+        | WorldError::NeedsEvents { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {
-            Some(top.field("connector").element(connector.index).field(connector.kind))
+            let ConnectorName { index, kind, .. } = connector;
+            let element = top.field("connector").element(*index);
+            // What acts on a free coordinate is a field of its connector.
+            let whole = scene.connectors.get(*index).map_or(*kind, |connector| connector.key());
+            let field = element.field(whole);
+            Some(if whole == *kind { field } else { field.field(*kind) })
         }
         WorldError::BadSetting { setting, .. } | WorldError::LostInRounding { setting, .. } => {
             Some(top.field("run").field(*setting))

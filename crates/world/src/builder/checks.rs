@@ -1,6 +1,7 @@
 //! Checks of the input of a world: names, numbers out of range, unknown bodies, coordinates that are too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
+use crate::connector::{ConnectorSpec, OnCoordinate};
 use crate::settings::{AdvanceBy, Stabilization, ToleranceOverrides};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
@@ -24,14 +25,6 @@ const BACK_TO_BACK: f64 = 2e-3;
 /// Point, path, place [m] and side of a rail's stop.
 type Stop<'a> = (&'a Anchor, &'a Arc<RailPath>, f64, bool);
 
-/// Refuses what only steps simulate so far.
-fn require_events(body: &BodySpec) -> Result<(), WorldError> {
-    if body.motion.is_some() {
-        return Err(WorldError::NeedsSteps { body: body.name.clone(), quantity: "motion" });
-    }
-    Ok(())
-}
-
 impl WorldBuilder {
     /// Checks names, numbers and references to bodies, in the order in which they were added.
     pub(super) fn check(&self) -> Result<(), WorldError> {
@@ -44,21 +37,25 @@ impl WorldBuilder {
                 return Err(WorldError::BadName { name: body.name.clone() });
             }
             check_body(body)?;
-            if self.settings.strategy == AdvanceBy::Events {
-                require_events(body)?;
-                if body.surface.resists() && !self.projects() {
-                    return Err(WorldError::FrictionWithoutForces { body: body.name.clone() });
-                }
+            let is_by_events = self.settings.strategy == AdvanceBy::Events;
+            if is_by_events && body.surface.resists() && !self.projects() {
+                return Err(WorldError::FrictionWithoutForces { body: body.name.clone() });
             }
         }
         for (body, law) in self.bodies.iter().zip(&self.free_motions) {
             check_flight(body, law)?;
         }
         for (index, spec) in self.connectors.iter().enumerate() {
-            self.check_bodies(&spec.connector.bodies(), || format!("connector {index}"))?;
+            let named: Vec<_> = spec.connector.all_bodies().collect();
+            self.check_bodies(&named, || format!("connector {index}"))?;
             let bad = |source| WorldError::BadConnector { connector: self.connector_name(index), source };
             spec.connector.check().map_err(bad)?;
             self.require_near(index, &spec.connector, LARGEST)?;
+            if let Some(what) = needs_events(spec)
+                && self.settings.strategy != AdvanceBy::Events
+            {
+                return Err(WorldError::NeedsEvents { connector: self.connector_name(index), what });
+            }
         }
         self.check_stops()?;
         for law in &self.forces {
@@ -258,6 +255,19 @@ fn check_flight(body: &BodySpec, law: &FreeMotion) -> Result<(), WorldError> {
     Ok(())
 }
 
+/// What only an advance by events simulates so far.
+fn needs_events(spec: &ConnectorSpec) -> Option<&'static str> {
+    let OnCoordinate { motor, friction, drive, .. } = &spec.on_coordinate;
+    match spec.connector.kind {
+        ConnectorKind::Rack { .. } => Some("racks"),
+        ConnectorKind::Pulley { .. } => Some("pulleys"),
+        _ if drive.is_some() => Some("drives"),
+        _ if motor.is_some() => Some("motors"),
+        _ if friction.is_some() => Some("dry friction in joints"),
+        _ => None,
+    }
+}
+
 /// Size of the largest coordinate of a connector [m], on a body or in the world.
 fn farthest(connector: &Connector) -> f64 {
     let anchors = connector.anchors().into_iter().flatten();
@@ -291,6 +301,9 @@ fn check_body(body: &BodySpec) -> Result<(), WorldError> {
     ];
     if let Some((quantity, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
         return bad(quantity, "finite", value);
+    }
+    if body.motion.as_ref().is_some_and(|motion| !motion.is_finite()) {
+        return bad("motion", "of finite numbers", f64::NAN);
     }
     let bounds = body.shape.bounds_at(&Pose::IDENTITY);
     let corners = [bounds.min, bounds.max].into_iter().flat_map(|corner| [corner.x, corner.y]);

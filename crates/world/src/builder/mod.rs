@@ -4,6 +4,7 @@
 mod checks;
 mod drift;
 mod joints;
+mod moved;
 mod warnings;
 
 pub(crate) use joints::Joints;
@@ -25,8 +26,8 @@ use checks::world_bounds;
 use drift::drift;
 use glam::DVec2;
 use halfgap_advance::Time;
-use halfgap_advance::rigid::{BodyPart, FreeMotion, PairRule, RigidParts, Scales, Surface, UniformMotion};
-use halfgap_collision::{Anchor, Body, BodyId, BodyState, ConnectorId, Tolerances};
+use halfgap_advance::rigid::{BodyPart, FreeMotion, PairRule, RigidParts, Scales, Surface};
+use halfgap_collision::{Anchor, Body, BodyId, BodyMotion, BodyState, ConnectorId, Tolerances};
 use halfgap_geometry::{Aabb, Edge, Pose, Rounded, Shape, ShapePool};
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -67,8 +68,8 @@ pub struct BodySpec {
     pub elasticity: f64,
     /// Friction and what else the surface does.
     pub surface: Surface,
-    /// Motion of a fixed body that is moved; only an advance by [steps](AdvanceBy::Steps) knows of it.
-    pub motion: Option<UniformMotion>,
+    /// Motion of a fixed body that is moved, counted from `state` on; its laws tell the velocities. `None` for one that stays.
+    pub motion: Option<BodyMotion>,
 }
 
 impl BodySpec {
@@ -290,8 +291,12 @@ impl WorldBuilder {
         ];
         let mut warnings: Vec<String> =
             self.warnings.into_iter().chain(warnings.into_iter().flatten()).collect();
-        let (named, mut bodies): (Vec<_>, Vec<_>) =
-            self.bodies.into_iter().zip(self.free_motions).map(into_part).unzip();
+        let (named, mut bodies): (Vec<_>, Vec<_>) = self
+            .bodies
+            .into_iter()
+            .zip(self.free_motions)
+            .map(|given| into_part(given, self.settings.start_time))
+            .unzip();
         let mut pool = ShapePool::default();
         bodies.iter_mut().for_each(|part| part.body.shape = pool.share(part.body.shape.clone()));
         let rules = start_rules(&self.settings, &self.excluded, &tolerances, &scales);
@@ -392,7 +397,10 @@ impl WorldBuilder {
             let shape = centered(body);
             let own = shape.bounds_at(&body.state.pose());
             bounds = Some(bounds.map_or(own, |all| all.union(own)));
-            let Some(inertia) = &body.inertia else { continue };
+            let Some(inertia) = &body.inertia else {
+                moved::include(body, shape.reach(), &self.settings, &mut scales);
+                continue;
+            };
             let reach = shape.reach();
             scales.smallest_radius = Some(scales.smallest_radius.map_or(reach, |least| least.min(reach)));
             let speed = body.state.velocity.length() + body.state.angular_velocity.abs() * reach;
@@ -579,11 +587,17 @@ fn centered(body: &BodySpec) -> Shape {
     body.shape.translated(-center_of_mass(body))
 }
 
-/// Splits the specification of a body into the data that the world keeps and the part for the system.
-fn into_part((spec, law): (BodySpec, FreeMotion)) -> (Named, BodyPart) {
+/// Splits the specification of a body into the data that the world keeps and the part for the system, at a time [s].
+fn into_part((spec, law): (BodySpec, FreeMotion), start: f64) -> (Named, BodyPart) {
     let (shape, center_of_mass) = (centered(&spec), center_of_mass(&spec));
-    let named =
-        Named { name: spec.name.clone(), center_of_mass, inertia: spec.inertia, gravity: law.acceleration };
+    let moved = spec.inertia.is_none() && spec.motion.as_ref().is_some_and(|motion| !motion.is_still());
+    let named = Named {
+        name: spec.name.clone(),
+        center_of_mass,
+        inertia: spec.inertia,
+        moved,
+        gravity: law.acceleration,
+    };
     let inverse =
         |value: fn(&Inertia) -> f64| spec.inertia.as_ref().map_or(0.0, |inertia| 1.0 / value(inertia));
     let body = Body {
@@ -592,12 +606,7 @@ fn into_part((spec, law): (BodySpec, FreeMotion)) -> (Named, BodyPart) {
         inverse_moment: inverse(|inertia| inertia.moment),
         elasticity: spec.elasticity,
     };
-    // A fixed body keeps neither velocity.
-    let state = if spec.inertia.is_some() {
-        spec.state
-    } else {
-        BodyState { velocity: DVec2::ZERO, angular_velocity: 0.0, ..spec.state }
-    };
+    let state = if spec.inertia.is_some() { spec.state } else { moved::state_at(&spec, start) };
     let BodySpec { surface, motion, .. } = spec;
     (named, BodyPart { surface, motion, ..BodyPart::new(body, law, state) })
 }

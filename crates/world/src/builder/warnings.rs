@@ -5,7 +5,7 @@ use crate::force::ForceLaw;
 use crate::rigid_settings::method;
 use glam::DVec2;
 use halfgap_advance::rigid::Scales;
-use halfgap_collision::{BodyId, BodyState, Connector};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorKind};
 use halfgap_geometry::Rounded;
 use std::sync::Arc;
 
@@ -44,7 +44,8 @@ impl WorldBuilder {
             return Some("there are no bodies: nothing will happen".to_owned());
         }
         let all_fixed = self.bodies.iter().all(|body| body.inertia.is_none());
-        all_fixed.then(|| "all bodies are fixed: nothing can move".to_owned())
+        let any_moved = self.bodies.iter().any(|body| body.motion.is_some());
+        (all_fixed && !any_moved).then(|| "all bodies are fixed: nothing can move".to_owned())
     }
 
     /// Warning if all bodies on which a force law acts are fixed.
@@ -87,7 +88,10 @@ impl WorldBuilder {
     /// Warning if a stop has no rail to end.
     pub(super) fn stop_warning(&self) -> Option<String> {
         let connectors = || self.connectors.iter().map(|spec| &spec.connector);
-        let is_lone = |stop: &Connector| stop.is_stop() && !connectors().any(|rail| stop.is_stop_of(rail));
+        let is_lone = |stop: &Connector| {
+            let ends = matches!(stop.kind, ConnectorKind::RailStop { .. });
+            ends && !connectors().any(|rail| stop.is_stop_of(rail))
+        };
         let index = connectors().position(is_lone)?;
         let name = self.connector_name(index);
         Some(format!(

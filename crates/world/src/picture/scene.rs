@@ -57,8 +57,10 @@ impl<'a> ScenePictures<'a> {
         let movable = recording.movable.iter().zip(&frame.states);
         let mut drawn: Vec<Drawn> = movable.map(|(&body, &state)| Drawn { body, state }).collect();
         for body in world.bodies().filter(|&body| world.is_fixed(body)) {
-            drawn.push(Drawn { body, state: world.state(body) });
-            let data = path_data(world.shape(body), &pose(&world.state(body)), view);
+            let recorded = recording.place(body).and_then(|place| frame.states.get(place));
+            let state = recorded.copied().unwrap_or_else(|| world.state(body));
+            drawn.push(Drawn { body, state });
+            let data = path_data(world.shape(body), &pose(&state), view);
             svg.path(&data, &[("fill", "#d8dbd6"), ("stroke", "#9aa09a"), ("stroke-width", "1")]);
         }
         draw_rails(&mut svg, world, view);

@@ -62,7 +62,11 @@ fn box_of_bodies(world: &World, recording: &Recording) -> Option<Aabb> {
     let moving = moving.reduce(Aabb::union);
     let fixed = world.bodies().filter(|&body| world.is_fixed(body));
     let fixed = fixed.map(|body| world.shape(body).bounds_at(&world.state(body).pose()));
-    let fixed = fixed.chain(rail_boxes(world));
+    let moved = frames(recording).flat_map(|frame| {
+        let states = frame.states.iter().skip(recording.movable.len());
+        recording.moved.iter().zip(states).map(|(&body, state)| world.shape(body).bounds_at(&state.pose()))
+    });
+    let fixed = fixed.chain(moved).chain(rail_boxes(world));
     let (still, carried): (Vec<_>, Vec<_>) =
         tied_points(world).partition(|point| recording.place(point.body).is_none());
     let Some(moving) = moving else {

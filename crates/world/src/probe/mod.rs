@@ -117,7 +117,7 @@ fn moving_in(world: &World, recording: &Recording, frame: &Frame, body: BodyId) 
     if body.is_world() {
         return Moving::BACKGROUND;
     }
-    let recorded = recording.movable.binary_search(&body).ok().and_then(|place| frame.states.get(place));
+    let recorded = recording.place(body).and_then(|place| frame.states.get(place));
     Moving::from(&recorded.copied().unwrap_or_else(|| world.state(body)))
 }
 

@@ -11,14 +11,15 @@ use std::io::{self, Write};
 const FORCE_HEADER: &str = "primary,normal_body,connector,x [m],y [m],normal_x,normal_y,force [N]";
 
 impl Recording {
-    /// Writes a line for each movable body at each output time.
+    /// Writes a line for each movable body, and each that is moved, at each output time.
     ///
     /// # Errors
     /// Errors of the writer.
     pub fn write_states_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         let header = "time [s],body,x [m],y [m],angle [rad],vx [m/s],vy [m/s],angular_velocity [rad/s]";
         writeln!(out, "{header}")?;
-        let names: Vec<_> = self.movable.iter().map(|&body| csv_field(self.name(body))).collect();
+        let names: Vec<_> =
+            self.movable.iter().chain(&self.moved).map(|&body| csv_field(self.name(body))).collect();
         for frame in &self.frames {
             for (name, state) in names.iter().zip(&frame.states) {
                 let (position, velocity) = (state.position, state.velocity);

@@ -14,6 +14,8 @@ struct RecordingJson<'a> {
     units: &'static str,
     bodies: Vec<BodyJson<'a>>,
     movable: Vec<&'a str>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    moved: Vec<&'a str>,
     frames: Vec<FrameJson<'a>>,
     impacts: Vec<ImpactJson<'a>>,
     contacts: Vec<ContactJson<'a>>,
@@ -26,7 +28,7 @@ struct BodyJson<'a> {
     fixed: bool,
 }
 
-/// States as `[x, y, angle, vx, vy, angular_velocity]`, in the order of `movable`.
+/// States as `[x, y, angle, vx, vy, angular_velocity]`, in the order of `movable`, then of `moved`.
 #[derive(Serialize)]
 struct FrameJson<'a> {
     time: f64,
@@ -107,6 +109,7 @@ impl Recording {
             units: "SI, radians; states are [x, y, angle, vx, vy, angular_velocity] of the movable bodies",
             bodies: bodies.collect(),
             movable: self.movable.iter().map(|&body| self.name(body)).collect(),
+            moved: self.moved.iter().map(|&body| self.name(body)).collect(),
             frames: self.frames.iter().map(|frame| self.frame_json(frame)).collect(),
             impacts: self.impacts.iter().map(|impact| self.impact_json(impact)).collect(),
             contacts: self.contacts.iter().map(|record| self.contact_json(record)).collect(),

@@ -20,6 +20,8 @@ pub struct Recording {
     pub bodies: Vec<RecordedBody>,
     /// The movable bodies; frames hold their states in this order.
     pub movable: Vec<BodyId>,
+    /// The fixed bodies that are moved; frames hold their states after those of the movable ones.
+    pub moved: Vec<BodyId>,
     /// States at output times, the first at the start.
     pub frames: Vec<Frame>,
     /// Impacts, in order.
@@ -85,7 +87,7 @@ pub struct RecordedBody {
 pub struct Frame {
     /// The time [s].
     pub time: f64,
-    /// States of the movable bodies, in the order of [`Recording::movable`].
+    /// States of the movable bodies, in the order of [`Recording::movable`], then of those that are moved.
     pub states: Vec<BodyState>,
     /// Energy of all bodies.
     pub energy: Energy,
@@ -106,6 +108,7 @@ impl Recording {
             title: title.into(),
             bodies,
             movable,
+            moved: world.bodies().filter(|&body| world.is_moved(body)).collect(),
             frames: Vec::new(),
             impacts: Vec::new(),
             contacts: Vec::new(),
@@ -116,7 +119,7 @@ impl Recording {
     /// Returns a frame of the world at its present time.
     #[must_use]
     pub fn frame_of(&self, world: &World) -> Frame {
-        let states = self.movable.iter().map(|&body| world.state(body)).collect();
+        let states = self.movable.iter().chain(&self.moved).map(|&body| world.state(body)).collect();
         Frame { time: world.time(), states, energy: world.energy(), forces: world.contact_forces() }
     }
 
@@ -129,9 +132,11 @@ impl Recording {
         self.bodies.get(body.0 as usize).map_or("", |body| &body.name)
     }
 
-    /// Index of a body in [`Recording::movable`]; `None` for fixed bodies and the background.
+    /// Place of a body in the states of frames: its index in [`Recording::movable`], and after those for one that is moved; `None` for
+    /// fixed bodies that stay, and the background.
     #[must_use]
     pub fn place(&self, body: BodyId) -> Option<usize> {
-        self.movable.binary_search(&body).ok()
+        let of_moved = || Some(self.movable.len() + self.moved.binary_search(&body).ok()?);
+        self.movable.binary_search(&body).ok().or_else(of_moved)
     }
 }

@@ -36,29 +36,14 @@ fn check_run(run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Refuses what only steps know of, where the scene advances by events, and motions that are none of a constant velocity.
+/// Refuses what the strategy of the scene does not know of.
 fn check_body(body: &BodyData, run: &RunData, at: &FieldPath) -> Result<(), SceneError> {
-    if let Some(motion) = &body.motion {
-        let others = [("oscillate", motion.oscillate.is_some()), ("table", motion.table.is_some())];
-        if let Some((field, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
-            return Err(unsupported(
-                at.field("motion").field(field),
-                "a motion other than at constant velocities is",
-            ));
-        }
-    }
     let fields = [
         ("friction", Some(body.friction), "friction"),
         ("static_friction", body.static_friction, "friction"),
         ("rolling_resistance", Some(body.rolling_resistance), "rolling resistance"),
     ];
-    check_resistance(fields, run, at)?;
-    if body.motion.is_some() && run.strategy == StrategyData::Events {
-        let message =
-            "a fixed body that moves is not supported by events yet: set `strategy` to `steps` in `[run]`";
-        return Err(SceneError::new(at.field("motion"), message.to_owned()));
-    }
-    Ok(())
+    check_resistance(fields, run, at)
 }
 
 /// Refuses coefficients of friction and the like, each with its field and its name, where events have no forces for them.
@@ -77,8 +62,4 @@ fn check_resistance(
         "{what} needs contacts that carry forces and are projected: leave `{field}` out of `[run]`, or set `strategy` to `steps`"
     );
     Err(SceneError::new(at.field(given), message))
-}
-
-fn unsupported(field: FieldPath, what: &str) -> SceneError {
-    SceneError::new(field, format!("{what} not supported yet"))
 }

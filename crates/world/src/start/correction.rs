@@ -8,7 +8,7 @@ use crate::world_error::{ConnectorName, WorldError};
 use glam::DVec2;
 use halfgap_advance::rigid::BodyPart;
 use halfgap_collision::{BodyId, Collision, Connector, ConnectorKind, ConnectorSample, Tolerances};
-use halfgap_contact::{DualActiveSet, InverseInertia, Problem, Row, Settings, Solution, Solver};
+use halfgap_contact::{DualActiveSet, InverseInertia, Problem, ProblemBody, Row, Settings, Solution, Solver};
 
 /// Contradiction between dependent connectors, as a fraction of the largest gap, that a round may leave to the next:
 /// gaps are curved, so those of a linkage with more bars than it needs agree only to second order.
@@ -22,6 +22,8 @@ const RATE_ROUNDINGS: f64 = 64.0;
 struct Correction {
     bodies: [BodyId; 2],
     jacobian: [f64; 6],
+    /// A third body, with the coefficient [m] of its rotation.
+    third: Option<(BodyId, f64)>,
     offset: f64,
     bilateral: bool,
 }
@@ -77,6 +79,7 @@ fn lift(record: &Collision) -> Correction {
     Correction {
         bodies: record.bodies(),
         jacobian: record.motion.kinematics.jacobian,
+        third: None,
         // A gap that is in the zone already may move within it.
         offset: if above < -accuracy { above } else { above + accuracy },
         bilateral: false,
@@ -87,6 +90,7 @@ fn join<'a>(bodies: &'a [BodyPart], connectors: &'a Joints) -> impl Iterator<Ite
     rows(bodies, connectors).map(|(_, connector, sample)| Correction {
         bodies: connector.bodies(),
         jacobian: sample.kinematics.jacobian,
+        third: connector.third(),
         offset: sample.gap,
         bilateral: connector.is_bilateral(),
     })
@@ -106,13 +110,14 @@ pub(super) fn correct_velocities(
     for (index, connector, sample) in bilateral {
         let sample = along_corner(bodies, connector, tolerances.accuracy).unwrap_or(sample);
         let (jacobian, rate) = (sample.kinematics.jacobian, sample.kinematics.rate);
-        let ends = connector.bodies();
-        if rate.abs() > RATE_ROUNDINGS * f64::EPSILON * rate_size(bodies, ends, &jacobian)
+        let (ends, third) = (connector.bodies(), connector.third());
+        let size = rate_size(bodies, ends, &jacobian) + turning_size(bodies, third);
+        if rate.abs() > RATE_ROUNDINGS * f64::EPSILON * size
             && worst.is_none_or(|(_, largest)| rate.abs() > largest)
         {
             worst = Some((index, rate.abs()));
         }
-        corrections.push(Correction { bodies: ends, jacobian, offset: rate, bilateral: true });
+        corrections.push(Correction { bodies: ends, jacobian, third, offset: rate, bilateral: true });
     }
     let Some((index, rate)) = worst else { return Ok(None) };
     let Some(changes) = least_changes(bodies, &corrections) else {
@@ -150,6 +155,13 @@ fn rate_size(bodies: &[BodyPart], ends: [BodyId; 2], jacobian: &[f64; 6]) -> f64
     sizes.sum()
 }
 
+/// Size of the part [m/s] of a rate that is of a third body.
+fn turning_size(bodies: &[BodyPart], third: Option<(BodyId, f64)>) -> f64 {
+    let of_body =
+        |(body, j): (BodyId, f64)| Some((j * bodies.get(body.index())?.state.angular_velocity).abs());
+    third.and_then(of_body).unwrap_or(0.0)
+}
+
 /// Returns the change of (x, y, angle) of each body, least in the mass metric, that undoes all rows; `None` if there is
 /// none.
 fn least_changes(bodies: &[BodyPart], corrections: &[Correction]) -> Option<Vec<[f64; 3]>> {
@@ -159,17 +171,19 @@ fn least_changes(bodies: &[BodyPart], corrections: &[Correction]) -> Option<Vec<
         problem.add_body(inertia).ok()?;
     }
     let background = problem.add_body(InverseInertia { inverse_mass: 0.0, inverse_moment: 0.0 }).ok()?;
-    for Correction { bodies, jacobian: j, offset, bilateral } in corrections {
-        let [primary, normal] = bodies
-            .map(|body| if body.is_world() { background } else { halfgap_contact::ProblemBody(body.0) });
+    for Correction { bodies, jacobian: j, third, offset, bilateral } in corrections {
+        let id = |body: BodyId| if body.is_world() { background } else { ProblemBody(body.0) };
+        let [primary, normal] = bodies.map(id);
         let row = Row::new(primary, [j[0], j[1], j[2]], *offset).against(normal, [j[3], j[4], j[5]]);
+        let row = Row { third: third.map(|(body, j)| (id(body), j)), ..row };
         problem.add_row(&if *bilateral { row.bilateral() } else { row }).ok()?;
     }
     let settings = Settings { inconsistency: INCONSISTENCY, ..Settings::default() };
     let mut solution = Solution::new();
     DualActiveSet::new(settings).ok()?.solve(&problem, &mut solution).ok()?;
     let mut changes = vec![[0.0; 3]; bodies.len()];
-    for (Correction { bodies: ends, jacobian, .. }, &force) in corrections.iter().zip(&solution.force) {
+    for (Correction { bodies: ends, jacobian, third, .. }, &force) in corrections.iter().zip(&solution.force)
+    {
         for (end, part) in ends.iter().zip(jacobian.chunks_exact(3)) {
             let Some(BodyPart { body, .. }) = bodies.get(end.index()) else { continue };
             let change = &mut changes[end.index()];
@@ -177,6 +191,11 @@ fn least_changes(bodies: &[BodyPart], corrections: &[Correction]) -> Option<Vec<
             for (place, entry) in part.iter().enumerate() {
                 change[place] += entry * inverse[place] * force;
             }
+        }
+        if let Some((end, j)) = third
+            && let Some(BodyPart { body, .. }) = bodies.get(end.index())
+        {
+            changes[end.index()][2] += j * body.inverse_moment * force;
         }
     }
     Some(changes)

@@ -56,18 +56,12 @@ pub(super) fn worst_connector(bodies: &[BodyPart], connectors: &Joints) -> Optio
 }
 
 fn error_of(bodies: &[BodyPart], connector: &Connector, time: f64) -> f64 {
-    let ([a, b], carrier) = movings_of(bodies, connector);
-    let surroundings = Surroundings { time, carrier: &carrier, ..Surroundings::default() };
-    connector.error_in([&a, &b], &surroundings)
+    let [a, b] = connector.bodies().map(|body| moving(bodies, body));
+    let carrier = carrier_of(bodies, connector);
+    connector.error_in([&a, &b], &Surroundings { time, carrier: &carrier, ..Surroundings::default() })
 }
 
-/// Motions of the two bodies of a connector, and of its carrier, or the background.
-fn movings_of(bodies: &[BodyPart], connector: &Connector) -> ([Moving; 2], Moving) {
-    let carrier = connector.third().map_or(BodyId::WORLD, |(body, _)| body);
-    (connector.bodies().map(|body| moving(bodies, body)), moving(bodies, carrier))
-}
-
-/// Every row of every connector that ties a movable body, with the connector's index, but of those that only pull.
+/// Every row of every connector that ties or is carried by a movable body, with the connector's index, but of those that only pull.
 pub(super) fn rows<'a>(
     bodies: &'a [BodyPart],
     connectors: &'a Joints,
@@ -77,13 +71,19 @@ pub(super) fn rows<'a>(
         .all()
         .iter()
         .enumerate()
-        .filter(move |(_, one)| !one.is_pull() && !one.bodies().into_iter().all(is_fixed));
+        .filter(move |(_, one)| !one.is_pull() && !one.all_bodies().all(is_fixed));
     let time = connectors.start();
     movable.flat_map(move |(index, connector)| {
-        let ([a, b], carrier) = movings_of(bodies, connector);
+        let [a, b] = connector.bodies().map(|body| moving(bodies, body));
+        let carrier = carrier_of(bodies, connector);
         (0..connector.row_count()).map(move |row| {
             let surroundings = Surroundings { time, carrier: &carrier, ..Surroundings::default() };
             (index, connector, connector.measure_in(row, [&a, &b], &surroundings))
         })
     })
+}
+
+/// The motion of the third body of a connector, if it has one.
+fn carrier_of(bodies: &[BodyPart], connector: &Connector) -> Moving {
+    connector.third().map_or(Moving::BACKGROUND, |(body, _)| moving(bodies, body))
 }

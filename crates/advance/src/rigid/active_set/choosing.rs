@@ -97,7 +97,8 @@ fn active_row(
     let bilateral = record.parties.bilateral;
     let gap = if bilateral { 0.0 } else { lifted.unwrap_or(record.geometry.distance) };
     let load = [record.response.force.unwrap_or(0.0), slip, turn];
-    let row = ActiveRow { source, bodies, bilateral, gap, hint, leans: false, grips, load };
+    let third = record.parties.third;
+    let row = ActiveRow { source, bodies, third, bilateral, gap, hint, leans: false, grips, load };
     Some(with_lean(assembly, connectors, row, time))
 }
 
@@ -144,6 +145,6 @@ const IDLE_SHARE: f64 = 1e-13;
 
 /// Places of the movable bodies of a record.
 pub(crate) fn places_of<'a>(region: &'a Region, record: &Collision) -> impl Iterator<Item = usize> + use<'a> {
-    let bodies = record.bodies();
-    bodies.into_iter().filter_map(|body| region.place(body))
+    let third = record.parties.third.map(|(body, _)| body);
+    record.bodies().into_iter().chain(third).filter_map(|body| region.place(body))
 }

@@ -35,13 +35,18 @@ pub(crate) fn exclude_dependent(
 
 /// Lists the rows of the candidates and their forces.
 fn list_candidates(assembly: &Assembly, region: &Region, candidates: &[usize], rows: &mut Rows) {
-    let Rows { inertia, sides, jacobians, forces, bilateral, .. } = rows;
+    let Rows { inertia, sides, thirds, jacobians, forces, bilateral, .. } = rows;
     inertia.clear();
     inertia.extend(region.bodies().iter().map(|&body| assembly.inertia(body)));
     let records = || candidates.iter().map(|&index| &region.records()[index]);
     sides.clear();
     let place = |body| region.place(body).and_then(|place| u32::try_from(place).ok());
     sides.extend(records().map(|record| record.bodies().map(place)));
+    thirds.clear();
+    thirds.extend(records().map(|record| {
+        let (body, coefficient) = record.parties.third?;
+        Some((place(body)?, coefficient))
+    }));
     jacobians.clear();
     jacobians.extend(records().map(|record| record.motion.kinematics.jacobian));
     forces.clear();

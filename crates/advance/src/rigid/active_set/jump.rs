@@ -101,7 +101,7 @@ fn find_changes(view: &View<'_>, region: &Region, settling: &mut Settling) {
 }
 
 /// Energy [J] that the region's bodies get by the impulses of the last solution and the changes of their velocities that these cause, beyond
-/// rounding, and without the work of surfaces that run.
+/// rounding, and without the work of surfaces that run and of bodies that are moved.
 fn gain_of(view: &View<'_>, region: &Region, settling: &Settling) -> f64 {
     let (mut gain, mut terms) = (0.0, 0.0);
     let mut velocities = Vec::with_capacity(region.bodies().len());
@@ -116,6 +116,13 @@ fn gain_of(view: &View<'_>, region: &Region, settling: &Settling) -> f64 {
         let running = change_of(region, slip, &velocities) - slip.row.rate;
         let impulse = slip.number.and_then(|number| settling.solution.force.get(number));
         gain -= impulse.map_or(0.0, |impulse| impulse * running);
+    }
+    if view.assembly.any_moved() {
+        let candidates = settling.candidates.iter().zip(&settling.solution.force);
+        for (record, impulse) in candidates.map(|(&index, impulse)| (&region.records()[index], impulse)) {
+            let own = change_along(region, record, &record.motion.kinematics.jacobian, &velocities);
+            gain -= impulse * (own - record.motion.normal_velocity);
+        }
     }
     gain - ROUNDED * terms
 }

@@ -31,7 +31,7 @@ impl Levers {
     }
 
     /// Fraction of a record's square that the connectors leave: the square of its lever relative to that without them.
-    /// 0 if neither body can move.
+    /// 0 if no body can move.
     pub(crate) fn left_of(
         &mut self,
         region: &Region,
@@ -48,6 +48,11 @@ impl Levers {
             for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
                 row[3 * place + k] += weight.sqrt() * j[3 * side + k];
             }
+        }
+        if let Some((body, j)) = record.parties.third
+            && let Some(place) = region.place(body)
+        {
+            row[3 * place + 2] += inertia(body).inverse_moment.sqrt() * j;
         }
         let square = |row: &[f64]| row.iter().map(|entry| entry * entry).sum::<f64>();
         let whole = square(row);

@@ -18,7 +18,10 @@ pub(crate) fn works_of_jump(region: &Region, settling: &Settling) -> Vec<(usize,
     };
     let normal = candidates.iter().zip(&solution.force).map(|(&index, &impulse)| {
         let motion = &region.records()[index].motion;
-        (index, work(index, &motion.kinematics.jacobian, motion.normal_velocity, impulse))
+        let of_two = work(index, &motion.kinematics.jacobian, motion.normal_velocity, impulse);
+        let third = region.records()[index].parties.third;
+        let turned = third.and_then(|(body, j)| Some(j * pushed[region.place(body)?][2]));
+        (index, turned.map_or(of_two, |turned| of_two + 0.5 * impulse * turned))
     });
     let mut works: Vec<(usize, f64)> = normal.collect();
     for slip in slips {
@@ -61,7 +64,7 @@ pub(super) fn note_undecided(assembly: &Assembly, region: &Region, settling: &mu
         let acts_on = |body: BodyId| {
             let others = candidates.iter().filter(|&&index| index != slip.record);
             region.place(body).is_some()
-                && others.map(|&index| region.records()[index].bodies()).any(|bodies| bodies.contains(&body))
+                && others.map(|&index| &region.records()[index]).any(|other| other.involves_body(body))
         };
         if pushes_together(assembly, record, axes()) && !record.bodies().into_iter().any(acts_on) {
             undecided.push((slip.record, slip.row.rate));

@@ -55,7 +55,7 @@ pub(super) fn pose_problem(
     let mut turns = slips.iter().filter_map(|slip| Some((slip.place, slip.turn()?))).peekable();
     for (place, &index) in candidates.iter().enumerate() {
         let record = &region.records()[index];
-        let offset = sound(record, free_offset(region, record, stage));
+        let offset = sound(record, free_offset(assembly, region, record, stage));
         let mut turn = turns.next_if(|(turned, _)| *turned == place).map(|(_, turn)| turn);
         // It may slip along both axes.
         while let Some((_, more)) = turns.next_if(|(turned, _)| *turned == place) {
@@ -70,14 +70,16 @@ pub(super) fn pose_problem(
     }
     for slip in slips.iter_mut().filter(|slip| slip.side.is_none()) {
         let record = &region.records()[candidates[slip.place]];
-        let [a, b] = accelerations_of_sides(region, record.bodies(), stage.accelerations());
+        let sides = (assembly, stage.accelerations());
+        let [a, b] = accelerations_of_sides(region, record.bodies(), sides);
         let offset = sound(record, slip.row.acceleration(&a, &b));
         let Some(row) = region.row_along(record, &slip.row.jacobian, offset) else { continue };
         let row = row.friction(slip.place, slip.bound(*jumps, *slack));
         slip.number = Some(problem.add_row(&row).expect("a row of finite numbers beside that of its gap"));
     }
     for pull in pulls {
-        let [a, b] = accelerations_of_sides(region, pull.bodies, stage.accelerations());
+        let sides = (assembly, stage.accelerations());
+        let [a, b] = accelerations_of_sides(region, pull.bodies, sides);
         let kinematics = &pull.row.kinematics;
         let offset = kinematics.acceleration(&a, &b);
         let row = region.row_between(pull.bodies, &kinematics.jacobian, offset);
@@ -87,25 +89,36 @@ pub(super) fn pose_problem(
 }
 
 /// Acceleration [m/s^2] of a record's gap without the forces of rows.
-fn free_offset(region: &Region, record: &Collision, stage: &Stage) -> f64 {
-    offset_under(region, record, stage.accelerations())
+fn free_offset(assembly: &Assembly, region: &Region, record: &Collision, stage: &Stage) -> f64 {
+    offset_under(assembly, region, record, stage.accelerations())
 }
 
 /// Acceleration [m/s^2] of a record's gap under given accelerations of the region's bodies.
-pub(super) fn offset_under(region: &Region, record: &Collision, accelerations: &[[f64; 3]]) -> f64 {
-    let [a, b] = accelerations_of_sides(region, record.bodies(), accelerations);
-    record.motion.kinematics.acceleration(&a, &b)
+pub(super) fn offset_under(
+    assembly: &Assembly,
+    region: &Region,
+    record: &Collision,
+    accelerations: &[[f64; 3]],
+) -> f64 {
+    let [a, b] = accelerations_of_sides(region, record.bodies(), (assembly, accelerations));
+    let of_two = record.motion.kinematics.acceleration(&a, &b);
+    match record.parties.third {
+        Some((body, j)) => match region.place(body) {
+            Some(place) => of_two + j * accelerations[place][2],
+            None => of_two + j * assembly.prescribed_acceleration(body).angular,
+        },
+        None => of_two,
+    }
 }
 
 fn accelerations_of_sides(
     region: &Region,
     bodies: [BodyId; 2],
-    accelerations: &[[f64; 3]],
+    (assembly, accelerations): (&Assembly, &[[f64; 3]]),
 ) -> [BodyAcceleration; 2] {
-    bodies.map(|body| {
-        region
-            .place(body)
-            .map_or(BodyAcceleration::default(), |place| body_acceleration(accelerations[place]))
+    bodies.map(|body| match region.place(body) {
+        Some(place) => body_acceleration(accelerations[place]),
+        None => assembly.prescribed_acceleration(body),
     })
 }
 

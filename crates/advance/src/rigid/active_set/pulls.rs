@@ -112,6 +112,7 @@ pub(super) fn choose_pulls(settling: &mut Settling) {
         held.push(ActiveRow {
             source: RowSource::Pull(id),
             bodies,
+            third: None,
             bilateral: true,
             gap: row.gap,
             hint: None,

@@ -3,7 +3,7 @@
 
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::ROUNDED_FORCE;
-use halfgap_contact::{ActiveRows, InverseInertia};
+use halfgap_contact::{ActiveRows, InverseInertia, ThirdSide};
 
 /// The candidates as equations, with buffers.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +19,8 @@ pub(crate) struct Redundant {
 pub(crate) struct Rows {
     pub(super) inertia: Vec<InverseInertia>,
     pub(super) sides: Vec<[Option<u32>; 2]>,
+    /// Third bodies of the rows, with their coefficients [m].
+    pub(super) thirds: Vec<Option<(u32, f64)>>,
     pub(super) jacobians: Vec<[f64; 6]>,
     pub(super) forces: Vec<f64>,
     /// True for rows of connectors, which may pull.
@@ -36,7 +38,11 @@ impl Rows {
 
     /// Factors the rows; returns the number of those that depend on others.
     pub(crate) fn factorize(&self, active: &mut ActiveRows) -> usize {
-        active.set_structure(&self.inertia, &self.sides);
+        let third = |(row, third): (u32, &Option<(u32, f64)>)| {
+            third.map(|(body, coefficient)| ThirdSide { row, body, coefficient })
+        };
+        let thirds: Vec<ThirdSide> = (0..).zip(&self.thirds).filter_map(third).collect();
+        active.set_structure_with_thirds(&self.inertia, &self.sides, &thirds);
         active.factorize(&self.jacobians)
     }
 
@@ -58,7 +64,7 @@ impl Rows {
         candidates: &mut Vec<usize>,
     ) {
         while self.factorize(active) > 0 {
-            let Self { sides, jacobians, forces, bilateral, excluded, .. } = self;
+            let Self { sides, thirds, jacobians, forces, bilateral, excluded, .. } = self;
             active.find_redundant(forces, |row| bilateral[row], excluded);
             if excluded.is_empty() {
                 break;
@@ -69,6 +75,7 @@ impl Rows {
             }
             remove_rows(candidates, excluded);
             remove_rows(sides, excluded);
+            remove_rows(thirds, excluded);
             remove_rows(jacobians, excluded);
             remove_rows(forces, excluded);
             remove_rows(bilateral, excluded);

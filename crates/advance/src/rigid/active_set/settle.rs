@@ -218,7 +218,7 @@ fn add_hops(assembly: &Assembly, region: &Region, settling: &mut Settling, stage
             continue;
         }
         let is_new = settling.candidates[..before].binary_search(&index).is_err();
-        let offset = offset_under(region, record, &settling.pushed);
+        let offset = offset_under(assembly, region, record, &settling.pushed);
         if is_new && is_low_hop(assembly, record, offset) {
             settling.candidates.push(index);
         }
@@ -260,7 +260,7 @@ pub(crate) fn accelerations_of(
     records: [usize; 2],
 ) -> [f64; 2] {
     push_bodies(assembly, region, settling, groups.stage());
-    records.map(|record| offset_under(region, &region.records()[record], &settling.pushed))
+    records.map(|record| offset_under(assembly, region, &region.records()[record], &settling.pushed))
 }
 
 /// True if a unilateral row may carry a force: connectors always do.
@@ -298,8 +298,9 @@ fn readmit_pressed(assembly: &Assembly, region: &Region, settling: &mut Settling
     push_bodies(assembly, region, settling, stage);
     let scale = settling.problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
     let pushed = std::mem::take(&mut settling.pushed);
-    let is_pressed =
-        |index: usize| offset_under(region, &region.records()[index], &pushed) < -NEGLIGIBLE * scale;
+    let is_pressed = |index: usize| {
+        offset_under(assembly, region, &region.records()[index], &pushed) < -NEGLIGIBLE * scale
+    };
     let any = settling.readmit_distant(is_pressed);
     settling.pushed = pushed;
     any

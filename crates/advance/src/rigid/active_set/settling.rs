@@ -314,6 +314,13 @@ impl Settling {
                 push(pull.bodies, &pull.row.kinematics.jacobian, force);
             }
         }
+        for (&index, &force) in records.iter().zip(&self.solution.force) {
+            if let Some((body, j)) = region.records()[index].parties.third
+                && let Some(place) = region.place(body)
+            {
+                sums[place][2] += inertia(body).inverse_moment * j * force;
+            }
+        }
     }
 }
 

@@ -34,6 +34,8 @@ pub(crate) struct Assembly {
     pub(super) remedies: Remedies,
     /// True for bodies that cannot move.
     pub(super) is_fixed: Vec<bool>,
+    /// True if any of these is moved.
+    pub(super) any_moved: bool,
     pub(super) force_laws: ForceLaws,
     /// True if some masses differ beyond the ratio that can be held together.
     pub(super) masses_are_extreme: bool,
@@ -68,6 +70,7 @@ impl Assembly {
             settings,
             remedies: Remedies::new(settings.without),
             is_fixed: trajectories.iter().map(|trajectory| trajectory.body().is_fixed()).collect(),
+            any_moved: trajectories.iter().any(|trajectory| trajectory.moved().is_some()),
             masses_are_extreme: false,
             surfaces: Surfaces::default(),
             is_forceless: force_laws.all.is_empty()
@@ -234,9 +237,7 @@ impl Assembly {
     /// True for a body other than a disc that turns.
     pub(crate) fn turns_about(&self, body: BodyId) -> bool {
         let trajectory = self.trajectory(body);
-        !trajectory.body().is_fixed()
-            && trajectory.disc().is_none()
-            && trajectory.moving_at(self.now).angular_velocity != 0.0
+        trajectory.disc().is_none() && trajectory.moving_at(self.now).angular_velocity != 0.0
     }
 }
 

@@ -1,8 +1,8 @@
-//! The motion of a body along its segment: a flight in closed form, or the dense output of an integrator's step.
+//! The motion of a body along its segment: a flight in closed form, the dense output of an integrator's step, or a prescribed motion.
 
 use crate::ode::{Jet, SegmentPolynomial, Spread};
 use glam::DVec2;
-use halfgap_collision::{Ball, BodyState, Flight, Motion, MotionBounds, Moving, Polynomial};
+use halfgap_collision::{Ball, BodyState, Flight, Motion, MotionBounds, MovedPath, Moving, Polynomial};
 use halfgap_geometry::Aabb;
 
 /// Bounds over a whole segment on a motion given by the polynomials of x, y and angle.
@@ -164,6 +164,8 @@ pub(crate) enum Path<'a> {
     Flight(&'a Flight),
     /// Dense output of an integrator.
     Dense(&'a DensePath),
+    /// As prescribed.
+    Moved(&'a MovedPath),
 }
 
 macro_rules! either {
@@ -171,6 +173,7 @@ macro_rules! either {
         match $path {
             Path::Flight($motion) => $answer,
             Path::Dense($motion) => $answer,
+            Path::Moved($motion) => $answer,
         }
     };
 }

@@ -4,7 +4,7 @@ use crate::ode::SegmentPolynomial;
 use crate::rigid::bodies::path::{DensePath, Path};
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{Body, BodyState, Flight, Motion, Moving};
+use halfgap_collision::{Body, BodyMotion, BodyState, Flight, Motion, MovedPath, Moving, Polynomial};
 #[cfg(feature = "save")]
 use halfgap_geometry::ShapePool;
 use std::f64::consts::TAU;
@@ -47,11 +47,11 @@ pub struct Trajectory {
     /// Number of whole turns to be added to the angles of the present motion.
     turns: f64,
     present: Present,
-    /// Motions of the last segments that were no flight, if there were any.
+    /// Motions of the last segments that were no flight, if there were any, and a prescribed one.
     led: Option<Box<Led>>,
 }
 
-/// Motions of a body that moves along with others.
+/// Motions of a body that moves along with others, or as prescribed.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Led {
@@ -59,6 +59,8 @@ struct Led {
     dense: DensePath,
     /// Uniform motion in the last step of a region, if there was one.
     coast: Option<Flight>,
+    /// Prescribed motion of a fixed body that is moved.
+    moved: Option<MovedPath>,
 }
 
 /// Kind of a body's present motion.
@@ -71,11 +73,13 @@ enum Present {
     Integrated,
     /// Uniform, in a step of a region whose events accumulate.
     Coasting,
+    /// Prescribed, for ever.
+    Moved,
 }
 
 impl Trajectory {
     pub(crate) fn new(body: Body, free_motion: FreeMotion, state: BodyState, time: Time) -> Self {
-        // A fixed body does not move, whatever its velocity.
+        // A fixed body does not move, whatever its velocity, unless it is told to.
         let free_motion = if body.is_fixed() { FreeMotion::default() } else { free_motion };
         let flight = if body.is_fixed() {
             Flight::fixed(state.position, state.angle)
@@ -84,6 +88,21 @@ impl Trajectory {
         };
         let (reach, disc) = (body.shape.reach(), body.shape.centered_disc());
         Self { start: time, flight, reach, disc, body, turns: 0.0, present: Present::Flight, led: None }
+    }
+
+    /// The same body, moved from now on; for a fixed body.
+    pub(crate) fn moved_by(mut self, motion: &BodyMotion) -> Self {
+        let BodyState { position, angle, .. } = *self.flight.start();
+        let moved = MovedPath::new(motion.clone(), position, angle, self.start.seconds());
+        self.led.get_or_insert_default().moved = Some(moved);
+        self.present = Present::Moved;
+        self
+    }
+
+    /// The prescribed motion of a fixed body that is moved.
+    #[inline]
+    pub(crate) fn moved(&self) -> Option<&MovedPath> {
+        self.led.as_deref().and_then(|led| led.moved.as_ref())
     }
 
     /// Takes a shape that is equal to its own from a pool, or leaves its own there.
@@ -162,6 +181,7 @@ impl Trajectory {
         match (self.present, self.led.as_deref()) {
             (Present::Integrated, Some(led)) => Path::Dense(&led.dense),
             (Present::Coasting, Some(Led { coast: Some(coast), .. })) => Path::Flight(coast),
+            (Present::Moved, Some(Led { moved: Some(moved), .. })) => Path::Moved(moved),
             _ => Path::Flight(&self.flight),
         }
     }
@@ -204,6 +224,16 @@ impl Trajectory {
     pub(crate) fn flight(&self) -> Option<&Flight> {
         match self.path() {
             Path::Flight(flight) => Some(flight),
+            Path::Dense(_) | Path::Moved(_) => None,
+        }
+    }
+
+    /// The parabola of the centre of mass from the start of the segment on, if it follows one.
+    #[inline]
+    pub(crate) fn parabola(&self) -> Option<Polynomial> {
+        match self.path() {
+            Path::Flight(flight) => flight.parabola(),
+            Path::Moved(moved) => moved.polynomial_from(0.0),
             Path::Dense(_) => None,
         }
     }

@@ -19,9 +19,10 @@ pub(crate) fn book_impact(assembly: &Assembly, books: &mut Books, report: &Impac
     let fastest = fastest_row(report, true);
     let is_capture = booking == Booking::Capture || fastest <= assembly.settings().tolerances.velocity_tol;
     let booked = if is_capture { &mut books.ledger.captures } else { &mut books.ledger.impacts };
-    *booked += report.energy_change - report.friction_change - report.surface_work;
+    *booked += report.energy_change - report.friction_change - report.surface_work - report.drive_work;
     books.ledger.impact_friction += report.friction_change;
     books.ledger.surfaces += report.surface_work;
+    books.ledger.drives += report.drive_work;
     note_kinetic_energy_before(assembly, books, report);
 }
 

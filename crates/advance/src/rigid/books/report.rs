@@ -190,12 +190,15 @@ pub struct ImpactReport {
     pub time: Time,
     /// The rows that carried an impulse.
     pub rows: Vec<RowReport>,
-    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2 over the rows, and over the slips of those with friction.
+    /// Change of the kinetic energy [J]: the sum of j (v- + v+)/2 over the rows, and over the slips of those with friction, and what
+    /// running surfaces and moved bodies do.
     pub energy_change: f64,
     /// What of it is the loss by friction [J], at most 0.
     pub friction_change: f64,
     /// What of it is the work of surfaces that run [J].
     pub surface_work: f64,
+    /// What of it is the work of bodies that are moved [J].
+    pub drive_work: f64,
     /// States after the impact of the movable bodies on which an impulse acted.
     pub states: Vec<(BodyId, BodyState)>,
 }
@@ -204,7 +207,7 @@ impl ImpactReport {
     /// Begins the report of an impact at a time.
     pub(crate) fn begin(&mut self, time: Time) {
         (self.time, self.energy_change) = (time, 0.0);
-        (self.friction_change, self.surface_work) = (0.0, 0.0);
+        (self.friction_change, self.surface_work, self.drive_work) = (0.0, 0.0, 0.0);
         self.rows.clear();
         self.states.clear();
     }
@@ -219,6 +222,12 @@ impl ImpactReport {
     pub(crate) fn add_friction(&mut self, energy: f64, surface_work: f64) {
         self.energy_change += energy;
         self.surface_work += surface_work;
+    }
+
+    /// Adds the work [J] of moved bodies at a row.
+    pub(crate) fn add_drive(&mut self, work: f64) {
+        self.energy_change += work;
+        self.drive_work += work;
     }
 
     /// Sets the loss by friction [J].

@@ -25,7 +25,7 @@ impl Connectors {
     pub(crate) fn new(all: Vec<Connector>, body_count: usize) -> Self {
         let ids = (0..).map(ConnectorId);
         Self {
-            of: ByBody::new(body_count, ids.zip(all.iter().map(Connector::bodies))),
+            of: ByBody::new(body_count, ids.zip(all.iter().map(named_by))),
             states: vec![ConnectorState::default(); all.len()],
             any_pulls: all.iter().any(Connector::is_pull),
             all,
@@ -37,10 +37,16 @@ impl Connectors {
         self.any_pulls
     }
 
-    /// Connectors that are tied to a body.
+    /// Connectors that are tied to a body, or carried by it.
     pub(crate) fn of(&self, body: BodyId) -> &[ConnectorId] {
         self.of.of(body)
     }
+}
+
+/// The bodies that a connector names, the background in place of a third one that is missing.
+fn named_by(connector: &Connector) -> [BodyId; 3] {
+    let [a, b] = connector.bodies();
+    [a, b, connector.third().map_or(BodyId::WORLD, |(body, _)| body)]
 }
 
 /// State of a connector.

@@ -81,14 +81,14 @@ pub(crate) struct Pairs {
     of_body: Vec<Vec<Link>>,
     /// Number of the present batch of predictions.
     batch: u16,
-    /// True for fixed bodies. These keep no list: nothing ever changes their motion, and their lists would be the
-    /// longest.
-    is_fixed: Vec<bool>,
+    /// True for bodies that stay where they are. These keep no list: nothing ever changes that, and their lists would be
+    /// the longest.
+    stays: Vec<bool>,
 }
 
 impl Pairs {
-    pub(crate) fn new(is_fixed: Vec<bool>) -> Self {
-        Self { of_body: vec![Vec::new(); is_fixed.len()], is_fixed, ..Self::default() }
+    pub(crate) fn new(stays: Vec<bool>) -> Self {
+        Self { of_body: vec![Vec::new(); stays.len()], stays, ..Self::default() }
     }
 
     pub(crate) fn get(&self, id: PairId) -> &Pair {
@@ -102,12 +102,6 @@ impl Pairs {
     /// The bodies of a pair, the lesser first.
     pub(crate) fn bodies(&self, id: PairId) -> [BodyId; 2] {
         self.bodies[id.0 as usize]
-    }
-
-    /// True for a body that cannot move.
-    #[inline]
-    pub(crate) fn is_fixed(&self, body: BodyId) -> bool {
-        self.is_fixed[body.index()]
     }
 
     /// The contacts of a pair.
@@ -185,14 +179,14 @@ impl Pairs {
         }
     }
 
-    /// Pairs of a body that is not fixed, in an order that depends on the past alone.
+    /// Pairs of a body that does not stay where it is, in an order that depends on the past alone.
     pub(crate) fn of_body(&self, body: BodyId) -> &[Link] {
         &self.of_body[body.index()]
     }
 
     /// The pair of two bodies, if there is one.
     pub(crate) fn between(&self, a: BodyId, b: BodyId) -> Option<PairId> {
-        let (few, other) = if self.is_fixed[a.index()] { (b, a) } else { (a, b) };
+        let (few, other) = if self.stays[a.index()] { (b, a) } else { (a, b) };
         self.of_body(few).iter().find(|link| link.other == other).map(|link| link.pair)
     }
 
@@ -217,7 +211,7 @@ impl Pairs {
             }
         };
         for (body, other) in [(a, b), (b, a)] {
-            if !self.is_fixed[body.index()] {
+            if !self.stays[body.index()] {
                 self.of_body[body.index()].push(Link { pair: id, other });
             }
         }

@@ -12,7 +12,7 @@ use halfgap_collision::{
     BodyId, Collision, Connector, ConnectorId, ConnectorSample, Detector, GapKinematics, Moving, RailHint,
     Surroundings, Tolerances,
 };
-use halfgap_contact::CollisionRow;
+use halfgap_contact::{CollisionRow, CollisionThird};
 use halfgap_geometry::{DirectionRange, Feature, FeatureId, GapSample, Shape};
 
 /// Fraction of `accuracy` by which a contact may run off its features before it counts as changed: more than the
@@ -40,6 +40,8 @@ pub(crate) struct ActiveRow {
     pub(crate) source: RowSource,
     /// The primary and the normal body.
     pub(crate) bodies: [BodyId; 2],
+    /// A third body on which it acts by its rotation, with its coefficient [m].
+    pub(crate) third: Option<(BodyId, f64)>,
     pub(crate) bilateral: bool,
     /// Gap [m] at which it is held: the one at which it formed, but for rows that are lifted.
     pub(crate) gap: f64,
@@ -281,7 +283,9 @@ pub(crate) fn source_of(record: &Collision) -> Option<RowSource> {
 
 /// Row of a record in an impact.
 pub(crate) fn row_of(assembly: &Assembly, record: &Collision) -> CollisionRow {
-    CollisionRow::of_collision(record, record.bodies().map(|body| assembly.inertia(body)))
+    let row = CollisionRow::of_collision(record, record.bodies().map(|body| assembly.inertia(body)));
+    let third = |(body, j)| CollisionThird::new(body, j, assembly.inertia(body));
+    CollisionRow { third: record.parties.third.map(third), ..row }
 }
 
 /// A row with `leans` set as it is at a time.
@@ -315,6 +319,11 @@ impl ActiveRow {
     /// Sets the place near which its point on a rail is sought.
     pub(crate) fn set_hint(&mut self, hint: Option<RailHint>) {
         self.hint = hint;
+    }
+
+    /// The bodies that it acts on: its two, and the third, if there is one.
+    pub(crate) fn all_bodies(&self) -> impl Iterator<Item = BodyId> + use<> {
+        self.bodies.into_iter().chain(self.third.map(|(body, _)| body))
     }
 
     /// True for a row of a connector that always acts.

@@ -5,6 +5,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::forest::Forest;
 use crate::rigid::region::touching::Region;
+use halfgap_collision::BodyId;
 
 /// Buffers for the sets of places that share their steps.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +54,7 @@ pub(crate) fn couple(
     let count = region.bodies().len();
     coupling.reset(count);
     for (_, row) in settling.active() {
-        coupling.join(row.bodies.iter().filter_map(|&body| region.place(body)));
+        coupling.join(row.all_bodies().filter_map(|body| region.place(body)));
     }
     let held = settling.held().iter().map(|row| row.bodies);
     for bodies in held.chain(settling.pulled().iter().map(|pull| pull.bodies)) {
@@ -84,7 +85,7 @@ pub(crate) fn couple(
     }
 }
 
-/// Joins bodies that touch without force, neither closing nor opening, if they are integrated or one of them turns:
+/// Joins bodies that touch without force, neither closing nor opening, if they are integrated or one of them turns or is moved:
 /// a group watches such a contact from step to step, where the search would go on in steps as short as the contact
 /// takes to sink by next to nothing.
 fn couple_touching(assembly: &Assembly, coupling: &mut Coupling, region: &Region, settling: &Settling) {
@@ -98,7 +99,8 @@ fn couple_touching(assembly: &Assembly, coupling: &mut Coupling, region: &Region
         }
         let mut places = touch.bodies.into_iter().filter_map(|body| region.place(body));
         let are_integrated = places.all(|place| coupling.integrated[place]);
-        if are_integrated || touch.bodies.iter().any(|&body| assembly.turns_about(body)) {
+        let varies = |&body: &BodyId| assembly.turns_about(body) || assembly.is_moved(body);
+        if are_integrated || touch.bodies.iter().any(varies) {
             coupling.join(touch.bodies.into_iter().filter_map(|body| region.place(body)));
         }
     }

@@ -91,7 +91,17 @@ fn list_idle(
             let source = RowSource::Contact(touch.features);
             let bodies = touch.bodies;
             let (hint, leans, grips) = (None, false, [Grip::Smooth; 2]);
-            let row = ActiveRow { source, bodies, bilateral: false, gap, hint, leans, grips, load: [0.0; 3] };
+            let row = ActiveRow {
+                source,
+                bodies,
+                third: None,
+                bilateral: false,
+                gap,
+                hint,
+                leans,
+                grips,
+                load: [0.0; 3],
+            };
             group.add_idle(with_lean(assembly, connectors, row, assembly.now()));
         }
     }

@@ -4,6 +4,7 @@
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::ActiveRow;
+use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::touching::Region;
 use halfgap_collision::BodyId;
 
@@ -32,21 +33,22 @@ impl Members {
         self.places.extend((0..region.bodies().len()).map(|place| (root(place), place)));
         let places = &self.places;
         // A row or touch belongs to the group of the first of its bodies that moves.
-        let root_of = |bodies: [BodyId; 2]| {
-            bodies.into_iter().find_map(|body| region.place(body)).map(|place| places[place].0)
-        };
+        let place_of = |body: BodyId| region.place(body).map(|place| places[place].0);
         self.active.clear();
         let active = settling.active().iter().enumerate();
-        self.active.extend(active.filter_map(|(index, (_, row))| Some((root_of(row.bodies)?, index))));
+        let of_row = |row: &ActiveRow| row.all_bodies().find_map(place_of);
+        self.active.extend(active.filter_map(|(index, (_, row))| Some((of_row(row)?, index))));
         self.touches.clear();
         let touches = region.touches().iter().enumerate();
-        self.touches.extend(touches.filter_map(|(index, touch)| Some((root_of(touch.bodies)?, index))));
+        let of_touch = |touch: &Touch| touch.bodies.into_iter().find_map(place_of);
+        self.touches.extend(touches.filter_map(|(index, touch)| Some((of_touch(touch)?, index))));
         self.held.clear();
         let held = settling.held().iter().enumerate();
-        self.held.extend(held.filter_map(|(index, row)| Some((root_of(row.bodies)?, index))));
+        self.held.extend(held.filter_map(|(index, row)| Some((of_row(row)?, index))));
         self.pulled.clear();
         let pulled = settling.pulled().iter().enumerate();
-        self.pulled.extend(pulled.filter_map(|(index, pull)| Some((root_of(pull.bodies)?, index))));
+        let of_pull = |pull: &Pull| pull.bodies.into_iter().find_map(place_of);
+        self.pulled.extend(pulled.filter_map(|(index, pull)| Some((of_pull(pull)?, index))));
         let Self { places, active, touches, held, pulled } = self;
         for list in [places, active, touches, held, pulled] {
             list.sort_unstable();

@@ -4,6 +4,7 @@ use crate::rigid::agenda::Agenda;
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::force_law::Snapshot;
 use crate::rigid::bodies::force_laws::ForceLaws;
+use crate::rigid::bodies::moved::motion_of;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::all::Books;
 use crate::rigid::connectors::store::Connectors;
@@ -60,17 +61,24 @@ impl Rooms {
                 .pairs
                 .iter()
                 .any(|(_, rule)| rule.rolling_resistance.is_some_and(|rolling| rolling > 0.0))
-            && parts
-                .bodies
-                .iter()
-                .all(|part| !part.free_motion.is_damped() && part.surface.rolling_resistance == 0.0);
+            && parts.bodies.iter().all(|part| {
+                !part.free_motion.is_damped()
+                    && part.surface.rolling_resistance == 0.0
+                    && part.motion.is_none()
+            });
         let region_steps = settings.region_steps.filter(|_| is_plain);
         let settings = RigidSettings { region_steps, ..settings };
         let RigidParts { bodies, connectors, force_laws, excluded, pairs } = parts;
         let surfaces = bodies.iter().map(|part| part.surface).collect();
         let surfaces = Surfaces::new(surfaces, PairRules::new(pairs));
-        let trajectory =
-            |BodyPart { body, free_motion, state, .. }| Trajectory::new(body, free_motion, state, start);
+        let trajectory = |BodyPart { body, free_motion, state, motion, .. }: BodyPart| {
+            let motion = motion_of(motion, body.is_fixed());
+            let trajectory = Trajectory::new(body, free_motion, state, start);
+            match motion {
+                Some(motion) => trajectory.moved_by(&motion),
+                None => trajectory,
+            }
+        };
         let trajectories: Vec<Trajectory> = bodies.into_iter().map(trajectory).collect();
         let movings: Vec<Moving> =
             trajectories.iter().map(|trajectory| trajectory.moving_at(start)).collect();
@@ -84,7 +92,12 @@ impl Rooms {
             books,
             agenda: Agenda::new(count, connectors.all().len()),
             connectors,
-            pairs: Pairs::new(trajectories.iter().map(|trajectory| trajectory.body().is_fixed()).collect()),
+            pairs: Pairs::new(
+                trajectories
+                    .iter()
+                    .map(|trajectory| trajectory.body().is_fixed() && trajectory.moved().is_none())
+                    .collect(),
+            ),
             search: Neighbourhood::new(&trajectories, excluded, &settings),
             groups: Groups::new(movings, settings.method),
             zeno: Zeno::new(count),

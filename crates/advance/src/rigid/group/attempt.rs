@@ -247,11 +247,12 @@ impl Dynamics<'_> {
         }
         let is_smooth = self.group.rows.iter().all(|row| row.bilateral);
         let of_forces = if is_smooth { STEADY_GROWTH } else { self.growth_by_forces() };
-        // On a body that is held still a force law may change much faster than along the last step, unseen by errors,
+        // What is moved may begin to move. On a body that is held still a force law may change much faster than along the last step, unseen by errors,
         // unless the laws tell a length over which they vary.
         let is_blind = !self.group.force_laws.is_empty()
             && self.group.force_length.is_infinite()
             && self.any_rests(&self.group.end_state);
+        let is_blind = is_blind || !self.group.moved.is_empty();
         if is_blind { of_forces.min(STEADY_GROWTH) } else { of_forces }
     }
 

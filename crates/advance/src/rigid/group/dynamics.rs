@@ -83,7 +83,9 @@ impl Dynamics<'_> {
 
     /// True if a single row holds the group: two bodies, or one against the background.
     fn has_a_single_row(&self) -> bool {
-        matches!(self.group.sides.as_slice(), [[a, b]] if a != b) && !self.group.active.is_soft()
+        matches!(self.group.sides.as_slice(), [[a, b]] if a != b)
+            && self.group.thirds.is_empty()
+            && !self.group.active.is_soft()
     }
 
     /// Adds the response to the only row to the accelerations: many groups have just one, and need no factorisation.
@@ -156,6 +158,8 @@ impl Dynamics<'_> {
                 self.stage.take_row(row, sides, &moment, extra.as_ref());
             }
         }
+        self.stage.take_thirds(&self.group.thirds);
+        self.follow_moved();
         self.push_as_prescribed();
         if self.has_a_single_row() {
             self.accelerate_by_row();
@@ -234,11 +238,11 @@ impl Dynamics<'_> {
         }
         if !self.group.rows.is_empty() {
             constrain(self);
-            let asks = |work: &Work| !matches!(work, Work::Law(_) | Work::Damping);
-            if self.group.works.last().is_some_and(asks) {
-                self.note_friction_powers(powers);
-                self.note_driving_powers(powers);
-            }
+        }
+        let asks = |work: &Work| !matches!(work, Work::Law(_) | Work::Damping);
+        if self.group.works.last().is_some_and(asks) {
+            self.note_friction_powers(powers);
+            self.note_driving_powers(powers);
         }
         let velocities = state[3 * bodies..6 * bodies].as_chunks::<3>().0;
         position_rates.as_chunks_mut::<3>().0.copy_from_slice(velocities);

@@ -39,7 +39,7 @@ impl Dynamics<'_> {
 
     fn end_energy(&mut self) -> Energy {
         let end = std::mem::take(&mut self.group.end_state);
-        let energy = self.energy(&end);
+        let energy = self.energy(&end, self.group.span);
         self.group.end_state = end;
         energy
     }
@@ -52,7 +52,7 @@ impl Dynamics<'_> {
             return 0.0;
         }
         let start = std::mem::take(&mut self.group.state);
-        let before = self.energy(&start);
+        let before = self.energy(&start, 0.0);
         self.group.state = start;
         let end = end.unwrap_or_else(|| self.end_energy());
         let after = end.total - self.group.projected;
@@ -70,8 +70,8 @@ impl Dynamics<'_> {
         lost / (MAJOR * control.local_error * moving + HUGE * rounding)
     }
 
-    /// Energy of the group's bodies in a state.
-    fn energy(&mut self, state: &[f64]) -> Energy {
+    /// Energy of the group's bodies in a state, with what is moved at an offset [s] of the segment.
+    fn energy(&mut self, state: &[f64], offset: f64) -> Energy {
         let count = self.group.bodies.len();
         let kinetic = self.kinetic_energy(state);
         let mut total = kinetic;
@@ -83,6 +83,7 @@ impl Dynamics<'_> {
             return Energy { total, kinetic };
         }
         self.stage.load(&self.group.bodies, state);
+        self.place_moved(offset);
         let now = self.physics.snapshot(self.start.seconds(), &self.stage.movings);
         let force_laws = self.group.force_laws.iter().map(|&law| &self.physics.force_laws[law]);
         total += force_laws.filter_map(|law| law.potential(&now)).sum::<f64>();

@@ -46,6 +46,11 @@ impl Slipping {
         self.turns.first().map(|(_, turn)| turn)
     }
 
+    /// By what the direction of the force of each one's row differs from its normal.
+    pub(super) fn turns(&self) -> &[(u32, [f64; 6])] {
+        &self.turns
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.turns.is_empty()
     }
@@ -112,7 +117,7 @@ impl Dynamics<'_> {
         if self.group.prescribed.is_empty() {
             return;
         }
-        let Group { bodies, sides, prescribed, .. } = &*self.group;
+        let Group { bodies, sides, thirds, prescribed, .. } = &*self.group;
         let Stage { jacobians, offsets, accelerations, changes, slipping, .. } = &mut *self.stage;
         changes.clear();
         changes.resize(bodies.len(), [0.0; 3]);
@@ -128,6 +133,14 @@ impl Dynamics<'_> {
                     changes[place][k] += inverse * direction * force;
                 }
             }
+            if let Some(third) = thirds.iter().find(|third| third.row == row) {
+                let place = third.body as usize;
+                let inertia = self.physics.mechanism.trajectories[bodies[place].index()].body();
+                changes[place][2] += inertia.inverse_moment * third.coefficient * force;
+            }
+        }
+        for third in thirds {
+            offsets[third.row as usize] += third.coefficient * changes[third.body as usize][2];
         }
         for ((offset, jacobian), sides) in offsets.iter_mut().zip(jacobians.iter()).zip(sides) {
             for (side, place) in sides.iter().enumerate() {

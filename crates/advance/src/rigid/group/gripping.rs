@@ -69,13 +69,21 @@ impl Group {
         }
     }
 
-    /// Sets aside the rows between bodies that locks hold together, but those of the locks. What cannot move is one body.
+    /// Sets aside the rows between bodies that locks hold together, but those of the locks. What stays is one body; each that is moved is another.
     fn set_spares_aside(&mut self, mechanism: &Mechanism<'_>, moving_of: impl Fn(BodyId) -> Moving + Copy) {
         let ground = self.bodies.len();
         let mut sets = Forest::default();
-        sets.reset(ground + 1);
-        let place = |bodies: &[BodyId], body: BodyId| bodies.binary_search(&body).unwrap_or(ground);
+        sets.reset(ground + 1 + self.moved.len());
+        let moved = self.moved.clone();
+        let place = |bodies: &[BodyId], body: BodyId| {
+            let of_moved = || moved.binary_search(&body).map_or(ground, |place| ground + 1 + place);
+            bodies.binary_search(&body).unwrap_or_else(|_| of_moved())
+        };
         let mut locks = vec![false; self.rows.len()];
+        // What nothing else moves is not locked by what lies between.
+        let leads = |sets: &mut Forest, set: usize| {
+            (ground..=ground + moved.len()).any(|place| sets.root(place) == sets.root(set))
+        };
         // Rows between two sets of locked bodies may lock these, too.
         loop {
             let mut between: Vec<([usize; 2], Bears, usize)> = Vec::new();
@@ -89,7 +97,7 @@ impl Group {
             let mut any = false;
             for chunk in between.chunk_by(|one, other| one.0 == other.0) {
                 let [a, b] = chunk[0].0;
-                if sets.root(a) == sets.root(b) {
+                if sets.root(a) == sets.root(b) || [a, b].iter().all(|&set| leads(&mut sets, set)) {
                     continue;
                 }
                 let of_second = |body: BodyId| sets.root(place(&self.bodies, body)) == sets.root(b);
@@ -168,6 +176,10 @@ enum Bears {
 impl ActiveRow {
     /// What the row bears, if it can be one of a lock: a joint, a contact that does not slip, or an anchor.
     fn bears(&self) -> Option<Bears> {
+        if self.third.is_some() {
+            // It lets its two bodies move together with the third.
+            return None;
+        }
         match (self.source, self.grips[0]) {
             (RowSource::Pull(_), _) => None,
             (RowSource::Connector(..), _) => self.is_joint().then_some(Bears::Anything),

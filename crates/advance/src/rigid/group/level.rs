@@ -4,6 +4,7 @@ use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::shares::ROUNDED;
 use halfgap_collision::BodyId;
+use halfgap_contact::ThirdSide;
 
 impl Dynamics<'_> {
     /// Sets accelerations to zero that are only rounding of the contact forces, so that a standing body does not creep
@@ -58,6 +59,20 @@ impl Dynamics<'_> {
                     any = true;
                 }
             }
+            any |= keep_turned(&self.group.sides, &self.group.thirds, levels);
         }
     }
+}
+
+/// Removes from the level bodies those that rows of three bodies tie to one which is not level; true if there are any.
+fn keep_turned(sides: &[[Option<u32>; 2]], thirds: &[ThirdSide], levels: &mut [bool]) -> bool {
+    let mut any = false;
+    for third in thirds {
+        let places = || sides[third.row as usize].into_iter().flatten().chain([third.body]);
+        if !places().all(|place| levels[place as usize]) {
+            any |= places().any(|place| levels[place as usize]);
+            places().for_each(|place| levels[place as usize] = false);
+        }
+    }
+    any
 }

@@ -7,6 +7,7 @@
 
 use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::forest::Forest;
+use halfgap_contact::ThirdSide;
 
 /// Whether the connectors of a group close a loop.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +37,15 @@ impl Loops {
         }
     }
 
+    /// Joins the third bodies of rows, too, given with the sides of all rows.
+    pub(crate) fn join_thirds(&mut self, bodies: usize, sides: &[[Option<u32>; 2]], thirds: &[ThirdSide]) {
+        for third in thirds {
+            let [a, _] = sides[third.row as usize];
+            let a = a.map_or(bodies, |place| place as usize);
+            self.is_closed |= !self.joined.join(a, third.body as usize);
+        }
+    }
+
     /// True if connectors close a loop.
     pub(crate) fn any(&self) -> bool {
         self.is_closed
@@ -54,6 +64,7 @@ mod tests {
         let row = |connector: usize, index: usize| ActiveRow {
             source: RowSource::Connector(ConnectorId(connector as u32), index),
             bodies: [BodyId::WORLD; 2],
+            third: None,
             bilateral: true,
             gap: 0.0,
             hint: None,

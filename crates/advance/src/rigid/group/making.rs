@@ -98,13 +98,34 @@ impl Group {
         if self.bodies.iter().any(|&body| assembly.trajectory(body).free_motion().is_damped()) {
             self.works.push(Work::Damping);
         }
-        let driven = |pull: &Pull| connectors.connector(pull.id).prescribed_rate(0.0) != 0.0;
-        if self.rows.iter().any(|row| row.is_driven(connectors.all())) || self.pulls.iter().any(driven) {
+        self.list_moved(assembly, connectors);
+        let pulls_on = |pull: &Pull| connectors.connector(pull.id).prescribed_rate(0.0) != 0.0;
+        let is_driven = self.rows.iter().any(|row| row.is_driven(connectors.all()));
+        if !self.moved.is_empty() || is_driven || self.pulls.iter().any(pulls_on) {
             self.works.push(Work::Drives);
         }
-        if self.pulls.iter().any(|pull| !driven(pull)) {
+        if self.pulls.iter().any(|pull| !pulls_on(pull)) {
             self.works.push(Work::Rubbing);
         }
+    }
+
+    /// Lists the moved bodies on which its motion depends.
+    fn list_moved(&mut self, assembly: &Assembly, connectors: &Connectors) {
+        if !assembly.any_moved() {
+            return;
+        }
+        let of_rows = self.rows.iter().chain(&self.idle).flat_map(|row| row.bodies);
+        let tied = self.bodies.iter().flat_map(|&body| connectors.of(body));
+        let of_connectors = tied.flat_map(|&id| {
+            let connector = connectors.connector(id);
+            connector.bodies().into_iter().chain(connector.third().map(|(body, _)| body))
+        });
+        let of_laws =
+            self.force_laws.iter().flat_map(|&law| assembly.force_laws().all[law].bodies()).copied();
+        let all = of_rows.chain(of_connectors).chain(of_laws);
+        self.moved.extend(all.filter(|&body| assembly.is_moved(body)));
+        self.moved.sort_unstable();
+        self.moved.dedup();
     }
 
     /// Chooses its first step, and whether its steps are brief, by the last groups of its bodies.

@@ -14,9 +14,12 @@ impl Dynamics<'_> {
         self.stage.load(&self.group.bodies, state);
     }
 
-    /// Sets the offset [s] in the segment at which rows are measured from now on.
+    /// Sets the offset [s] in the segment at which rows are measured from now on, and places what is moved there.
     pub(super) fn set_clock(&mut self, offset: f64) {
         self.physics.mechanism.time = self.start.seconds() + offset;
+        if !self.group.moved.is_empty() {
+            self.place_moved(offset);
+        }
     }
 
     /// Gives all of the group's bodies their poses and velocities at an offset [s] of the segment.
@@ -40,13 +43,14 @@ impl Dynamics<'_> {
 
     /// Chooses the watched bodies: those of the chosen rows, and of all contacts without force.
     pub(crate) fn watch_rows(&mut self, watches: impl Fn(usize) -> bool) {
-        let Group { bodies, sides, idle, .. } = &*self.group;
+        let Group { bodies, sides, thirds, idle, .. } = &*self.group;
         let of_rows = (0..sides.len()).filter(|&row| watches(row)).flat_map(|row| sides[row]).flatten();
+        let of_thirds = thirds.iter().filter(|third| watches(third.row as usize)).map(|third| third.body);
         let place_of = |body| bodies.binary_search(body).ok().and_then(|place| u32::try_from(place).ok());
         let of_idle = idle.iter().flat_map(|ActiveRow { bodies, .. }| bodies).filter_map(place_of);
         let watched = &mut self.stage.watched;
         watched.clear();
-        watched.extend(of_rows.chain(of_idle));
+        watched.extend(of_rows.chain(of_thirds).chain(of_idle));
         watched.sort_unstable();
         watched.dedup();
     }
@@ -62,7 +66,8 @@ impl Dynamics<'_> {
     /// Gives the bodies of a row their poses at an offset [s] of the segment.
     pub(crate) fn put_row_at(&mut self, row: usize, offset: f64) {
         self.set_clock(offset);
-        for place in self.group.sides[row].into_iter().flatten() {
+        let third = self.group.thirds.iter().find(|third| third.row as usize == row).map(|third| third.body);
+        for place in self.group.sides[row].into_iter().flatten().chain(third) {
             self.put(place as usize, offset);
         }
     }

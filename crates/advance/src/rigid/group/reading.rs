@@ -177,17 +177,19 @@ impl Group {
         self.stiffness
     }
 
-    /// The stops.
-    /// The first time [s] later than another at which a force law or a drive of the group is not smooth.
+    /// The first time [s] later than another at which a force law, a drive or a moved body of the group is not smooth.
     pub(crate) fn next_kink(&self, physics: &Physics<'_>, after: f64) -> Option<f64> {
         let of_laws = self.force_laws.iter().filter_map(|&law| physics.force_laws[law].next_kink(after));
         let of_drives = self.rows.iter().filter_map(|row| match row.source {
             RowSource::Connector(id, _) => physics.mechanism.connectors[id.index()].next_kink(after),
             RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_) => None,
         });
-        of_laws.chain(of_drives).reduce(f64::min)
+        let trajectories = physics.mechanism.trajectories;
+        let of_moved = self.moved.iter().filter_map(|body| trajectories[body.index()].next_kink(after));
+        of_laws.chain(of_drives).chain(of_moved).reduce(f64::min)
     }
 
+    /// The stops.
     #[inline]
     pub(crate) fn stops(&self) -> &[Stop] {
         &self.stops

@@ -11,6 +11,7 @@ use crate::rigid::group::state::{Group, Work};
 use crate::rigid::settings::ExtraAcceleration;
 use glam::DVec2;
 use halfgap_collision::{BodyAcceleration, BodyId, BodyState, MotionBounds, Moving};
+use halfgap_contact::ThirdSide;
 
 /// Buffers for the evaluation of one moment, one set for the whole system.
 #[derive(Clone, Debug, Default)]
@@ -150,6 +151,10 @@ impl Stage {
             let force = group.forces[index].abs().max(group.end_forces[index].abs());
             sides.iter().flatten().for_each(|&place| self.gross[place as usize] += force);
         }
+        for third in &group.thirds {
+            let row = third.row as usize;
+            self.gross[third.body as usize] += group.forces[row].abs().max(group.end_forces[row].abs());
+        }
         let Self { gross, least, .. } = self;
         least.clear();
         least.extend(group.sides.iter().map(|sides| {
@@ -249,6 +254,14 @@ impl Stage {
         self.gap_error = self.gap_error.max(error.abs());
         self.offsets.push(offset);
         self.jacobians.push(moment.kinematics.jacobian);
+    }
+
+    /// Adds what the third bodies of rows, which have all been taken, do to the accelerations of their gaps.
+    pub(super) fn take_thirds(&mut self, thirds: &[ThirdSide]) {
+        for third in thirds {
+            let [.., angular] = self.accelerations[third.body as usize];
+            self.offsets[third.row as usize] += third.coefficient * angular;
+        }
     }
 
     #[inline]

@@ -11,7 +11,7 @@ use crate::rigid::group::stiffness::Stiffness;
 use crate::rigid::group::tree::JointTree;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId};
-use halfgap_contact::ActiveRows;
+use halfgap_contact::{ActiveRows, ThirdSide};
 
 /// Work of forces without a potential, which is integrated with the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +69,8 @@ pub(crate) struct Group {
     pub(super) stress: Vec<f64>,
     /// Places in `bodies` of the two bodies of each row; `None` for one that cannot move.
     pub(super) sides: Vec<[Option<u32>; 2]>,
+    /// Third sides of rows, with the places of their bodies.
+    pub(super) thirds: Vec<ThirdSide>,
     /// Contacts within the group that touch without force, each with the gap [m] below which it fires.
     pub(super) idle: Vec<ActiveRow>,
     pub(super) stops: Vec<Stop>,
@@ -76,6 +78,8 @@ pub(crate) struct Group {
     pub(super) pulls: Vec<Pull>,
     /// Force laws that act on its bodies, ascending.
     pub(super) force_laws: Vec<usize>,
+    /// Bodies that are moved and that rows, contacts without force, stops or laws of it tell of.
+    pub(super) moved: Vec<BodyId>,
     pub(super) works: Vec<Work>,
     pub(super) active: ActiveRows,
     /// The tree in whose coordinates it is stepped, if its bodies hang together by pins.
@@ -177,10 +181,12 @@ impl Group {
             locks: emptied(old.locks),
             stress: emptied(old.stress),
             sides: emptied(old.sides),
+            thirds: emptied(old.thirds),
             idle: emptied(old.idle),
             stops: emptied(old.stops),
             pulls: emptied(old.pulls),
             force_laws: emptied(old.force_laws),
+            moved: emptied(old.moved),
             works: emptied(old.works),
             active: old.active,
             tree: old.tree,
@@ -212,6 +218,12 @@ impl Group {
         let place = |body| bodies.binary_search(&body).ok().and_then(|place| u32::try_from(place).ok());
         self.sides.clear();
         self.sides.extend(self.rows.iter().map(|row| row.bodies.map(place)));
+        let third = |(row, active): (u32, &ActiveRow)| {
+            let (body, coefficient) = active.third?;
+            Some(ThirdSide { row, body: place(body)?, coefficient })
+        };
+        self.thirds.clear();
+        self.thirds.extend((0..).zip(&self.rows).filter_map(third));
     }
 
     /// Number of components of its state: positions, velocities, works.

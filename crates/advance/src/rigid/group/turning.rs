@@ -13,7 +13,7 @@ impl Group {
     pub(crate) fn prepare(&mut self, now: Time, is_patient: bool, inertias: &[InverseInertia]) {
         (self.start, self.made, self.is_patient) = (now, now, is_patient);
         self.find_sides();
-        self.active.set_structure(inertias, &self.sides);
+        self.active.set_structure_with_thirds(inertias, &self.sides, &self.thirds);
         // The projection acts on the end of a segment: a segment of no length ends here.
         let dimension = self.dimension();
         self.end_state.clear();

@@ -21,8 +21,9 @@ impl Dynamics<'_> {
         }
         let steady = group.steady_step.map_or(0.0, |step| STEADY_GROWTH * step);
         let by_way = steady.max(self.longest_step_by_way(!any_idle));
-        // Measuring each contact takes longer: that is done only if the first bound is too short.
-        let is_enough = any_idle || group.next_step.is_some_and(|step| step <= by_way);
+        // Measuring each contact takes longer: that is done only if the first bound is too short, and nothing else moves.
+        let is_enough =
+            any_idle || !group.moved.is_empty() || group.next_step.is_some_and(|step| step <= by_way);
         if is_enough { by_way } else { by_way.max(self.longest_step_by_rows()) }
     }
 
@@ -42,7 +43,23 @@ impl Dynamics<'_> {
             };
             wait(WAY_OF_A_STEP * trajectory.reach(), of_points(&group.state), of_points(&group.rates))
         });
-        waits.fold(f64::INFINITY, f64::min)
+        waits.chain(self.waits_for_moved()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The steps [s] along which no point of a moved body moves by more than the fraction of its reach.
+    fn waits_for_moved(&self) -> impl Iterator<Item = f64> {
+        self.group.moved.iter().map(|body| {
+            let trajectory = &self.physics.mechanism.trajectories[body.index()];
+            let moving = trajectory.moving_at(self.start);
+            let acceleration = trajectory.prescribed_acceleration(self.start);
+            let of_points =
+                |linear: DVec2, turning: f64| trajectory.fastest_point([linear.x, linear.y, turning]);
+            wait(
+                WAY_OF_A_STEP * trajectory.reach(),
+                of_points(moving.velocity, moving.angular_velocity),
+                of_points(acceleration.linear, acceleration.angular),
+            )
+        })
     }
 
     /// The step [s] along which no active contact changes by more than the fraction: its normal and its bodies turn, and

@@ -140,6 +140,8 @@ fn write_report(
             // by more than the rounding of the rows' own rates.
             let energy = 0.5 * impulse * (rate_before + rate_of(assembly, record, time));
             report.add(RowReport { collision: *record, rate_before, rate_after, impulse }, energy);
+            let moved = assembly.moved_rate(record.bodies(), &record.motion.kinematics.jacobian, time);
+            report.add_drive(-impulse * moved);
         }
     }
     for (record, slip) in region.records().iter().zip(impact.friction()) {
@@ -147,6 +149,7 @@ fn write_report(
         let running: f64 = record.bodies().iter().map(|&body| assembly.surfaces().speed(body)).sum();
         let after = rate_along(assembly, record, &friction.jacobian, time);
         report.add_friction(0.5 * impulse * (friction.rate + running + after), impulse * running);
+        report.add_drive(-impulse * assembly.moved_rate(record.bodies(), &friction.jacobian, time));
     }
     report.set_friction_loss(impact.friction_loss());
     let struck = region.bodies().iter().zip(region.struck()).filter(|&(_, &is_struck)| is_struck);

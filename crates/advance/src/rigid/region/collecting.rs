@@ -25,20 +25,19 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
     let body = region.bodies[place];
     for &id in view.connectors.of(body) {
         let connector = view.connectors.connector(id);
-        let [a, b] = connector.bodies();
-        let other = if a == body { b } else { a };
-        if region.place(other).is_some_and(|earlier| earlier < place) {
+        let others = || connector.all_bodies().filter(|&other| other != body);
+        if others().any(|other| region.place(other).is_some_and(|earlier| earlier < place)) {
             continue;
         }
         // Bodies between which something pulls, or a stop is to be met, are moved together.
-        if (connector.is_pull() || connector.is_stop()) && view.assembly.is_movable(other) {
-            region.add(other);
+        if connector.is_pull() || connector.is_stop() {
+            others().filter(|&other| view.assembly.is_movable(other)).for_each(|other| region.add(other));
         }
         // What pulls does nothing in an instant.
         if connector.is_pull() {
             continue;
         }
-        let moving = [a, b].map(|body| view.assembly.moving_at(body, time));
+        let moving = connector.bodies().map(|body| view.assembly.moving_at(body, time));
         for row in 0..view.connectors.row_count(id) {
             let mut record = view.connectors.connector_record(view.assembly, id, row, &moving, time);
             let is_active = connector.is_bilateral() || view.connectors.is_active_unilaterally(id);
@@ -54,9 +53,7 @@ fn collect_connectors(view: &View<'_>, region: &mut Region, place: usize, time: 
                 continue;
             }
             region.records.push(record);
-            if view.assembly.is_movable(other) {
-                region.add(other);
-            }
+            others().filter(|&other| view.assembly.is_movable(other)).for_each(|other| region.add(other));
         }
     }
 }

@@ -13,10 +13,14 @@ use halfgap_geometry::GapSample;
 /// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
 /// measured.
 pub(crate) fn rate_of(assembly: &Assembly, record: &Collision, time: Time) -> f64 {
-    rate_along(assembly, record, &record.motion.kinematics.jacobian, time)
+    let of_two = rate_along(assembly, record, &record.motion.kinematics.jacobian, time);
+    match record.parties.third {
+        Some((body, j)) => of_two + j * assembly.moving_at(body, time).angular_velocity,
+        None => of_two,
+    }
 }
 
-/// Rate [m/s] of what has given coefficients by the velocities of a record's bodies at a time.
+/// Rate [m/s] of what has given coefficients by the velocities of a record's two bodies at a time.
 pub(crate) fn rate_along(assembly: &Assembly, record: &Collision, j: &[f64; 6], time: Time) -> f64 {
     let sides = record.bodies();
     let of_side = |(side, body): (usize, BodyId)| {

@@ -111,7 +111,11 @@ impl Region {
             let change = self.place(body).map_or([0.0; 3], |place| self.changes[place]);
             (0..3).map(|k| j[3 * side + k] * change[k]).sum::<f64>()
         };
-        sides.into_iter().enumerate().map(of_side).sum()
+        let of_two: f64 = sides.into_iter().enumerate().map(of_side).sum();
+        match record.parties.third.and_then(|(body, j)| Some((self.place(body)?, j))) {
+            Some((place, j)) => of_two + j * self.changes[place][2],
+            None => of_two,
+        }
     }
 
     /// Records that are excluded because they jam.
@@ -179,6 +183,12 @@ impl Region {
                     *change += response * impulse;
                 }
             }
+            if let Some(third) = row.third
+                && let Some(place) = self.place(third.body)
+            {
+                struck[place] |= impulse != 0.0;
+                changes[place][2] += third.response * impulse;
+            }
         }
         for (row, slip) in impact.rows().iter().zip(impact.friction()) {
             let Some((friction, impulse)) = slip else { continue };
@@ -192,9 +202,14 @@ impl Region {
         (self.changes, self.struck) = (changes, struck);
     }
 
-    /// Row of a record in a problem of the region's bodies, in their order; `None` if neither of its bodies moves.
+    /// Row of a record in a problem of the region's bodies, in their order; `None` if none of its bodies moves.
     pub(crate) fn row_of(&self, record: &Collision, offset: f64) -> Option<Row> {
-        let row = self.row_along(record, &record.motion.kinematics.jacobian, offset)?;
+        let row = self.row_along(record, &record.motion.kinematics.jacobian, offset);
+        let third = record.parties.third.and_then(|(body, j)| Some((self.problem_body(body)?, j)));
+        let row = match third {
+            Some((body, j)) => Row::turning(row, body, j, offset),
+            None => row?,
+        };
         Some(if record.parties.bilateral { row.bilateral() } else { row })
     }
 
@@ -210,8 +225,11 @@ impl Region {
         coefficients: &[f64; 6],
         offset: f64,
     ) -> Option<Row> {
-        let place = |body: BodyId| u32::try_from(self.place(body)?).ok().map(ProblemBody);
-        Row::between(bodies.map(place), coefficients, offset)
+        Row::between(bodies.map(|body| self.problem_body(body)), coefficients, offset)
+    }
+
+    fn problem_body(&self, body: BodyId) -> Option<ProblemBody> {
+        u32::try_from(self.place(body)?).ok().map(ProblemBody)
     }
 
     /// The row of a record with a force whose direction differs from the normal by a turn.

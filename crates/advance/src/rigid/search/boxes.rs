@@ -7,6 +7,7 @@
 use crate::rigid::bodies::path::Path;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::search::lane::Lane;
+use crate::rigid::search::predictions::LONGEST_SPAN;
 use crate::time::Time;
 use glam::DVec2;
 use halfgap_collision::{Flight, Motion, Polynomial, first_closing_time};
@@ -102,6 +103,7 @@ impl Room {
                 let by_axes = damped_leaving_time(flight, offset, &core)?;
                 Some(time.plus(by_axes.max(flight.stays_within(slack(), offset)?)))
             }
+            Path::Moved(moved) => Some(time.plus(moved.stays_within(slack(), offset, LONGEST_SPAN)?)),
             // The motion after the segment is predicted anew.
             Path::Dense(dense) if core.contains(&dense.center_box()) => None,
             Path::Dense(dense) => {

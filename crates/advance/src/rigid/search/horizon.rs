@@ -21,7 +21,7 @@ impl Searching<'_> {
 
     /// Notes a contact of two bodies that a search from a time on has found.
     pub(crate) fn note_contact_ahead(&mut self, bodies: [BodyId; 2], from: Time, contact: Time) {
-        for body in bodies.into_iter().filter(|&body| !self.pairs.is_fixed(body)) {
+        for body in bodies.into_iter().filter(|&body| self.assembly.is_movable(body)) {
             let slot = self.assembly.slot(body);
             let first = &mut self.search.first_contacts[slot];
             // A contact that has gone by without a change of the motion no longer counts.

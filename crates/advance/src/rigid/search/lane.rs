@@ -8,7 +8,7 @@ use crate::rigid::bodies::path::Path;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::time::Time;
 use glam::DVec2;
-use halfgap_collision::{Flight, Motion, Polynomial};
+use halfgap_collision::{Motion, Polynomial};
 
 /// Kind of a body's motion, as far as its lane knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,13 +87,18 @@ impl Lane {
     /// Copies the present motion of the body.
     pub(crate) fn follow(&mut self, trajectory: &Trajectory) {
         self.is_at_rest = trajectory.is_at_rest();
-        let Some(parabola) = trajectory.flight().and_then(Flight::parabola) else {
+        let Some(parabola) = trajectory.parabola() else {
             self.kind = LaneKind::Other;
             self.start = trajectory.start();
             match trajectory.path() {
                 Path::Dense(dense) => {
                     let stay = dense.center_box();
                     (self.position, self.course) = (stay.center(), 0.5 * stay.size().length());
+                    (self.velocity, self.acceleration) = (DVec2::ZERO, DVec2::ZERO);
+                }
+                Path::Moved(_) => {
+                    (self.position, self.course) =
+                        (trajectory.moving_at(self.start).pose.position, f64::INFINITY);
                     (self.velocity, self.acceleration) = (DVec2::ZERO, DVec2::ZERO);
                 }
                 Path::Flight(flight) => {

@@ -12,7 +12,7 @@ use crate::rigid::bodies::path::bounds_along;
 use crate::rigid::contacts::rows::{RowSource, moving_of};
 use crate::rigid::group::dynamics::Dynamics;
 use glam::DVec2;
-use halfgap_collision::{Arms, MotionBounds, Moving};
+use halfgap_collision::{Arms, BodyId, Motion, MotionBounds, Moving};
 use halfgap_geometry::{Feature, GapSample, LineFeature};
 
 /// One side of a contact, in the middle of a segment.
@@ -78,8 +78,10 @@ pub(crate) fn stays(dynamics: &Dynamics<'_>, row: usize) -> bool {
         feature: mechanism.feature(active.bodies[index], features[index]),
         moving: movings[index],
         arm,
-        bounds: dynamics.group.sides()[row][index]
-            .map_or(MotionBounds::default(), |place| dynamics.stage.bounds()[place as usize]),
+        bounds: match dynamics.group.sides()[row][index] {
+            Some(place) => dynamics.stage.bounds()[place as usize],
+            None => bounds_of_other(dynamics, active.bodies[index]),
+        },
     };
     let (primary, other) = (side(0, arms.primary), side(1, arms.normal));
     let half = 0.5 * dynamics.group.span();
@@ -87,6 +89,16 @@ pub(crate) fn stays(dynamics: &Dynamics<'_>, row: usize) -> bool {
         Feature::Line(line) => stays_on_line(&sample, line, &primary, &other, half),
         Feature::Round(_) => stays_between_ends(&sample, &primary, &other, half),
     }
+}
+
+/// Bounds along the segment on the motion of a body that cannot move, but may be moved.
+fn bounds_of_other(dynamics: &Dynamics<'_>, body: BodyId) -> MotionBounds {
+    let trajectory = dynamics.physics.mechanism.trajectories.get(body.index());
+    let moved = trajectory.and_then(|trajectory| trajectory.moved().map(|moved| (trajectory, moved)));
+    moved.map_or(MotionBounds::default(), |(trajectory, moved)| {
+        let from = trajectory.offset(dynamics.start);
+        moved.bounds(from, from + dynamics.group.span())
+    })
 }
 
 /// True if the foot of the primary feature's centre surely stays on a line, and the line's direction in the feature's

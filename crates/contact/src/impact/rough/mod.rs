@@ -207,9 +207,7 @@ impl Impact {
                 break;
             }
         }
-        let square =
-            |row: &CollisionRow| -> f64 { row.jacobian.iter().zip(&row.response).map(|(j, r)| j * r).sum() };
-        let longest = self.rows.iter().map(square).fold(0.0, f64::max).sqrt();
+        let longest = self.rows.iter().map(CollisionRow::square).fold(0.0, f64::max).sqrt();
         self.noise = self.noise.max(Settings::default().natural_residual * rough.fastest * longest);
         for _ in 0..FINAL_PASSES {
             if !self.is_any_violated(small) {
@@ -226,7 +224,7 @@ impl Impact {
         let subtracted = self.impulses.iter().enumerate().filter(|(_, impulse)| **impulse != 0.0);
         let mut any = false;
         for (row, &impulse) in subtracted {
-            rough.motions.add(row, &self.rows[row].response, impulse);
+            rough.motions.add_row(row, &self.rows[row], impulse);
             any = true;
         }
         if any {
@@ -265,19 +263,19 @@ impl Rough {
     fn begin(&mut self, rows: &[CollisionRow]) {
         self.motions.load(rows, &self.rows);
         self.known.iter_mut().for_each(|known| known.listed.clear());
-        let scaled = |jacobian: &[f64; 6], response: &[f64; 6], rate: f64| {
-            let square: f64 = jacobian.iter().zip(response).map(|(j, r)| j * r).sum();
-            if square > 0.0 { rate.abs() / square.sqrt() } else { 0.0 }
-        };
-        let normal = rows.iter().map(|row| scaled(&row.jacobian, &row.response, row.rate));
+        let scaled = |square: f64, rate: f64| if square > 0.0 { rate.abs() / square.sqrt() } else { 0.0 };
+        let normal = rows.iter().map(|row| scaled(row.square(), row.rate));
         let along = self.rows.iter().flatten();
-        let along = along.map(|friction| scaled(&friction.jacobian, &friction.response, friction.rate));
+        let along = along.map(|friction| {
+            let square = friction.jacobian.iter().zip(&friction.response).map(|(j, r)| j * r).sum();
+            scaled(square, friction.rate)
+        });
         self.fastest = normal.chain(along).fold(0.0, f64::max);
     }
 
     /// Adds impulses along the normal and the tangential row of a row to the bodies.
     fn push(&mut self, rows: &[CollisionRow], row: usize, [normal, tangential]: [f64; 2]) {
-        self.motions.add(row, &rows[row].response, normal);
+        self.motions.add_row(row, &rows[row], normal);
         if let Some(friction) = &self.rows[row] {
             self.motions.add(row, &friction.response, tangential);
             self.impulses[row] += tangential;

@@ -15,6 +15,8 @@ pub(super) struct BodyMotions {
     inertia: Vec<InverseInertia>,
     /// Places of the primary and the normal body of each row; `None` for one that the row does not move.
     sides: Vec<[Option<u32>; 2]>,
+    /// Place of the third body of each row.
+    thirds: Vec<Option<u32>>,
 }
 
 impl BodyMotions {
@@ -23,6 +25,7 @@ impl BodyMotions {
     pub(super) fn load(&mut self, rows: &[CollisionRow], friction: &[Option<FrictionRow>]) {
         self.bodies.clear();
         self.bodies.extend(rows.iter().flat_map(CollisionRow::movable_bodies).flatten());
+        self.bodies.extend(rows.iter().filter_map(CollisionRow::movable_third));
         for (row, friction) in rows.iter().zip(friction) {
             let turned = friction.iter().flat_map(|friction| friction.response.chunks(3));
             let moves = turned.map(|part| part.iter().any(|&x| x != 0.0));
@@ -38,6 +41,7 @@ impl BodyMotions {
         self.inertia.resize(self.bodies.len(), none);
         let mut largest = vec![[0.0_f64; 2]; self.bodies.len()];
         self.sides.clear();
+        self.thirds.clear();
         for (row, friction) in rows.iter().zip(friction) {
             let sides = row.bodies.map(|body| self.bodies.binary_search(&body).ok());
             self.sides.push(sides.map(|side| side.map(|place| place as u32)));
@@ -60,6 +64,19 @@ impl BodyMotions {
                     }
                 }
             }
+            self.load_third(row, &mut largest);
+        }
+    }
+
+    /// Takes the third side of a row.
+    fn load_third(&mut self, row: &CollisionRow, largest: &mut [[f64; 2]]) {
+        let place = row.third.and_then(|third| self.bodies.binary_search(&third.body).ok());
+        self.thirds.push(place.map(|place| place as u32));
+        if let (Some(place), Some(third)) = (place, &row.third)
+            && third.jacobian.abs() > largest[place][1]
+        {
+            largest[place][1] = third.jacobian.abs();
+            self.inertia[place].inverse_moment = third.response / third.jacobian;
         }
     }
 
@@ -73,23 +90,57 @@ impl BodyMotions {
         self.sides[row]
     }
 
+    /// Place of the third body of a row.
+    pub(super) fn third(&self, row: usize) -> Option<u32> {
+        self.thirds[row]
+    }
+
+    /// Adds an impulse along a row to changes of the velocities of all bodies.
+    pub(super) fn push(&self, row: usize, data: &CollisionRow, impulse: f64, change: &mut [[f64; 3]]) {
+        add(self.sides[row], &data.response, impulse, change);
+        if let (Some(place), Some(third)) = (self.thirds[row], &data.third) {
+            change[place as usize][2] += third.response * impulse;
+        }
+    }
+
+    /// Change of the rate of a row by changes of the velocities of all bodies.
+    pub(super) fn rate_by(&self, row: usize, data: &CollisionRow, change: &[[f64; 3]]) -> f64 {
+        let of_two = rate(self.sides[row], &data.jacobian, change);
+        match (self.thirds[row], &data.third) {
+            (Some(place), Some(third)) => of_two + third.jacobian * change[place as usize][2],
+            _ => of_two,
+        }
+    }
+
+    /// Adds an impulse along a row.
+    pub(super) fn add_row(&mut self, row: usize, data: &CollisionRow, impulse: f64) {
+        let mut change = std::mem::take(&mut self.change);
+        self.push(row, data, impulse, &mut change);
+        self.change = change;
+    }
+
+    /// Change of the rate of a row.
+    pub(super) fn rate_of(&self, row: usize, data: &CollisionRow) -> f64 {
+        self.rate_by(row, data, &self.change)
+    }
+
     /// Changes of the velocities of all bodies.
     pub(super) fn changes(&mut self) -> &mut [[f64; 3]] {
         &mut self.change
     }
 
-    /// Adds an impulse along a row with a response.
+    /// Adds an impulse on the two bodies of a row, with a response.
     pub(super) fn add(&mut self, row: usize, response: &[f64; 6], impulse: f64) {
         add(self.sides[row], response, impulse, &mut self.change);
     }
 
-    /// Change of the rate of a row with a Jacobian.
+    /// Change of a rate of the two bodies of a row, with a Jacobian.
     pub(super) fn rate(&self, row: usize, jacobian: &[f64; 6]) -> f64 {
         rate(self.sides[row], jacobian, &self.change)
     }
 }
 
-/// Adds an impulse along a response to changes of velocities.
+/// Adds an impulse on two bodies along a response to changes of velocities.
 pub(super) fn add(sides: [Option<u32>; 2], response: &[f64; 6], impulse: f64, change: &mut [[f64; 3]]) {
     for (side, place) in sides.into_iter().enumerate() {
         let Some(place) = place else { continue };
@@ -99,7 +150,7 @@ pub(super) fn add(sides: [Option<u32>; 2], response: &[f64; 6], impulse: f64, ch
     }
 }
 
-/// Change of the rate of a row by changes of velocities.
+/// Change of a rate of two bodies by changes of velocities.
 pub(super) fn rate(sides: [Option<u32>; 2], jacobian: &[f64; 6], change: &[[f64; 3]]) -> f64 {
     let of_side = |side: usize| {
         sides[side].map_or(0.0, |place| {

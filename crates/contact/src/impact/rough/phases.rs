@@ -177,7 +177,12 @@ impl Rough {
     /// Adds the normal row of a row, with an offset. Returns its place in the problem.
     pub(super) fn list(&mut self, rows: &[CollisionRow], row: usize, offset: f64) -> Option<usize> {
         let sides = self.motions.sides(row).map(|side| side.map(crate::problem::ProblemBody));
-        let made = Row::between(sides, &rows[row].jacobian, offset)?;
+        let made = Row::between(sides, &rows[row].jacobian, offset);
+        let third = self.motions.third(row).map(crate::problem::ProblemBody).zip(rows[row].third);
+        let made = match third {
+            Some((body, third)) => Some(Row::turning(made, body, third.jacobian, offset)),
+            None => made,
+        }?;
         let made = if rows[row].is_bilateral() { made.bilateral() } else { made };
         let place = self.problem.add_row(&made).ok()?;
         self.listed.push((row, false));

@@ -108,14 +108,14 @@ impl Impact {
         }
         rough.begin_problem();
         for &other in tied {
-            let offset = rate(rough.motions.sides(other), &self.rows[other].jacobian, &change);
+            let offset = rough.motions.rate_by(other, &self.rows[other], &change);
             rough.list(&self.rows, other, offset);
         }
         rough.solve(self.rows.len(), None)?;
         self.solves += 1;
         let impulses: Vec<f64> = rough.solution.force.clone();
         for (&other, &impulse) in tied.iter().zip(&impulses) {
-            add(rough.motions.sides(other), &self.rows[other].response, impulse, &mut change);
+            rough.motions.push(other, &self.rows[other], impulse, &mut change);
         }
         Ok((change, impulses))
     }
@@ -123,7 +123,7 @@ impl Impact {
     /// Brings the rates of all rows up to date with the motion of the bodies.
     pub(super) fn renew_rates(&mut self, rough: &mut Rough) {
         for (row, data) in self.rows.iter().enumerate() {
-            let change = rough.motions.rate(row, &data.jacobian);
+            let change = rough.motions.rate_of(row, data);
             self.rates[row] = data.rate + change;
             self.largest_change = self.largest_change.max(change.abs());
             if let Some(friction) = &rough.rows[row] {

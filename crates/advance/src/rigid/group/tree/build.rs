@@ -40,9 +40,13 @@ impl Dynamics<'_> {
         tree.clear();
         loops.clear();
         if settings.projection && self.physics.extra.is_none() && settings.method.is_adaptive() {
-            self.find_tree_for(settings.steps.local_error * settings.steps.length);
-            let Group { loops, bodies, rows, sides, .. } = &mut *self.group;
+            // A tree hangs on points that stay.
+            if self.group.moved.is_empty() {
+                self.find_tree_for(settings.steps.local_error * settings.steps.length);
+            }
+            let Group { loops, bodies, rows, sides, thirds, .. } = &mut *self.group;
             loops.find(bodies.len(), rows, sides);
+            loops.join_thirds(bodies.len(), sides, thirds);
         }
     }
 

@@ -12,6 +12,7 @@ use crate::rigid::group::state::Group;
 use crate::rigid::group::tree::{Hinge, JointTree};
 use crate::rigid::shares::{LARGE, ROUNDS};
 use glam::DVec2;
+use halfgap_contact::ThirdSide;
 
 /// Kept share of a row at or below which a new tree is given up: its rows depend on each other.
 const SINGULAR: f64 = 1e-6;
@@ -43,9 +44,22 @@ pub(super) struct LoopRows {
     corrections: Vec<f64>,
 }
 
+/// The bodies that a row acts on, by their places in the group: its two, and a third one with the coefficient [m] of its rotation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends {
+    sides: [Option<u32>; 2],
+    third: Option<(u32, f64)>,
+}
+
+/// The bodies of a row of a group.
+fn ends_of(sides: &[[Option<u32>; 2]], thirds: &[ThirdSide], row: usize) -> Ends {
+    let third = thirds.iter().find(|third| third.row as usize == row);
+    Ends { sides: sides[row], third: third.map(|third| (third.body, third.coefficient)) }
+}
+
 impl JointTree {
     /// Factorises G for the rows in their order, after the sweep inwards.
-    pub(crate) fn factorize(&mut self, jacobians: &[[f64; 6]], sides: impl Fn(usize) -> [Option<u32>; 2]) {
+    fn factorize(&mut self, jacobians: &[[f64; 6]], ends: impl Fn(usize) -> Ends) {
         let bodies = self.links.len();
         let mut columns = std::mem::take(&mut self.loop_rows.columns);
         columns.clear();
@@ -54,12 +68,12 @@ impl JointTree {
         (self.loop_rows.softness, self.loop_rows.kept) = (0.0, f64::INFINITY);
         for (row, jacobian) in jacobians.iter().enumerate() {
             let column = &mut columns[row * bodies..][..bodies];
-            self.pull(jacobian, sides(row), column);
+            self.pull(jacobian, ends(row), column);
         }
         for (row, jacobian) in jacobians.iter().enumerate() {
             let responses = columns.chunks(bodies).take(row + 1);
-            self.loop_rows.factor.extend(responses.map(|column| rate(jacobian, sides(row), column)));
-            let whole = self.square_of(jacobian, sides(row));
+            self.loop_rows.factor.extend(responses.map(|column| rate(jacobian, ends(row), column)));
+            let whole = self.square_of(jacobian, ends(row));
             self.loop_rows.eliminate(row, whole);
         }
         self.loop_rows.columns = columns;
@@ -67,7 +81,7 @@ impl JointTree {
 
     /// J M^-1 J^T of a row by itself, without pins, at most [`LARGE`] times that of its heavier side. The part of a
     /// much lighter body would be larger, but is often held by a pin to which the row points.
-    fn square_of(&self, jacobian: &[f64; 6], sides: [Option<u32>; 2]) -> f64 {
+    fn square_of(&self, jacobian: &[f64; 6], Ends { sides, third }: Ends) -> f64 {
         let of_side = |(side, place): (usize, Option<u32>)| {
             let Some(link) =
                 place.and_then(|place| self.link_of[place as usize]).map(|index| &self.links[index])
@@ -79,12 +93,16 @@ impl JointTree {
             force.length_squared() / link.mass + torque * torque / link.moment
         };
         let squares = [(0, sides[0]), (1, sides[1])].map(of_side);
-        let heavier = squares.into_iter().filter(|&square| square > 0.0).fold(f64::INFINITY, f64::min);
-        squares.iter().sum::<f64>().min(LARGE * heavier)
+        let of_third = third.and_then(|(place, j)| {
+            self.link_of[place as usize].map(|index| j * j / self.links[index].moment)
+        });
+        let all = || squares.into_iter().chain(of_third);
+        let heavier = all().filter(|&square| square > 0.0).fold(f64::INFINITY, f64::min);
+        all().sum::<f64>().min(LARGE * heavier)
     }
 
     /// Accelerations of the tree, body by body of the group, under a force of 1 N along a row.
-    fn pull(&mut self, jacobian: &[f64; 6], sides: [Option<u32>; 2], column: &mut [[f64; 3]]) {
+    fn pull(&mut self, jacobian: &[f64; 6], Ends { sides, third }: Ends, column: &mut [[f64; 3]]) {
         for bundle in &mut self.bundles {
             (bundle.force, bundle.torque) = (DVec2::ZERO, 0.0);
         }
@@ -95,6 +113,11 @@ impl JointTree {
             let bundle = &mut self.bundles[index];
             bundle.force -= force;
             bundle.torque -= center.perp().dot(force) + jacobian[3 * side + 2];
+        }
+        if let Some((place, j)) = third
+            && let Some(index) = self.link_of[place as usize]
+        {
+            self.bundles[index].torque -= j;
         }
         for index in (0..self.links.len()).rev() {
             let Hinge::Link { parent, .. } = self.links[index].hinge else { continue };
@@ -177,12 +200,13 @@ impl LoopRows {
 }
 
 /// J a: acceleration [m/s^2] of a row's gap by accelerations of its bodies.
-fn rate(jacobian: &[f64; 6], sides: [Option<u32>; 2], accelerations: &[[f64; 3]]) -> f64 {
+fn rate(jacobian: &[f64; 6], Ends { sides, third }: Ends, accelerations: &[[f64; 3]]) -> f64 {
     let of_side = |(side, place): (usize, Option<u32>)| {
         let acceleration = place.map_or([0.0; 3], |place| accelerations[place as usize]);
         (0..3).map(|k| jacobian[3 * side + k] * acceleration[k]).sum::<f64>()
     };
-    sides.into_iter().enumerate().map(of_side).sum()
+    let of_two = sides.into_iter().enumerate().map(of_side).sum();
+    third.map_or(of_two, |(place, j)| of_two + j * accelerations[place as usize][2])
 }
 
 impl Dynamics<'_> {
@@ -209,7 +233,11 @@ impl Dynamics<'_> {
             let active = &self.group.rows[row];
             let moment = self.physics.mechanism.measure_next(active, &self.stage.movings, &mut twin);
             let spins = self.group.sides[row].map(|place| self.stage.spin_at(place));
-            self.stage.offsets.push(moment.kinematics.acceleration(&spins[0], &spins[1]));
+            let mut offset = moment.kinematics.acceleration(&spins[0], &spins[1]);
+            if let Some((place, j)) = ends_of(&self.group.sides, &self.group.thirds, row).third {
+                offset += j * self.stage.spin_at(Some(place)).angular;
+            }
+            self.stage.offsets.push(offset);
             self.stage.jacobians.push(moment.kinematics.jacobian);
         }
         self.factorize_loop_rows();
@@ -222,9 +250,9 @@ impl Dynamics<'_> {
     }
 
     fn factorize_loop_rows(&mut self) {
-        let Group { tree, sides, .. } = &mut *self.group;
+        let Group { tree, sides, thirds, .. } = &mut *self.group;
         let rows = std::mem::take(&mut tree.loop_rows.rows);
-        tree.factorize(&self.stage.jacobians, |row| sides[rows[row]]);
+        tree.factorize(&self.stage.jacobians, |row| ends_of(sides, thirds, rows[row]));
         tree.loop_rows.rows = rows;
     }
 
@@ -249,7 +277,7 @@ impl Dynamics<'_> {
 
     /// Solves G x = -`offsets`, leaves x in `forces`, and C x in `changes`.
     pub(crate) fn respond_by_tree(&mut self) {
-        let Group { tree, sides, .. } = &mut *self.group;
+        let Group { tree, sides, thirds, .. } = &mut *self.group;
         let bodies = tree.links.len();
         let Stage { jacobians, offsets, forces, changes, .. } = &mut *self.stage;
         changes.clear();
@@ -265,8 +293,9 @@ impl Dynamics<'_> {
             }
             lacking.clear();
             let rows = tree.loop_rows.rows.iter().zip(&*jacobians).zip(&*offsets);
+            let ends = |row: usize| ends_of(sides, thirds, row);
             lacking
-                .extend(rows.map(|((&row, jacobian), offset)| offset + rate(jacobian, sides[row], changes)));
+                .extend(rows.map(|((&row, jacobian), offset)| offset + rate(jacobian, ends(row), changes)));
             tree.loop_rows.solve(&lacking, &mut corrections);
             tree.loop_rows.pull_all(&corrections, changes);
             forces.iter_mut().zip(&corrections).for_each(|(force, correction)| *force += correction);

@@ -131,6 +131,7 @@ impl Scene {
             let row = ActiveRow {
                 source,
                 bodies,
+                third: self.connectors[connector].third(),
                 bilateral: true,
                 gap: 0.0,
                 hint,
