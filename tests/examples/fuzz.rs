@@ -11,6 +11,7 @@
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --rough    # with friction
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --rolling  # with rolling resistance, too
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --pushed   # stacks of blocks that slide
+//! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --mechanisms
 //! cargo run --release -p halfgap-tests --example fuzz -- --count 1000 --needs haste,accumulation   # tells which scenes need a remedy
 //! ```
 //!
@@ -18,8 +19,8 @@
 
 use halfgap::{Remedy, RemedySet};
 use halfgap_tests::generate::{
-    billiard_of_seed, coarse_of_seed, impulses_of_seed, pushed_stack_of_seed, rolling_of_seed, rough_of_seed,
-    scene_of_seed, variation_of_seed,
+    billiard_of_seed, coarse_of_seed, impulses_of_seed, mechanism_of_seed, pushed_stack_of_seed,
+    rolling_of_seed, rough_of_seed, scene_of_seed, variation_of_seed,
 };
 use halfgap_tests::invariants::{Budget, Verdict, silence_panics, trial, trial_without};
 use halfgap_tests::shrink::shrink;
@@ -50,6 +51,7 @@ Runs generated scenes and counts what became of them.
   --rough       or scenes with friction
   --rolling     or scenes with friction and rolling resistance
   --pushed      or three blocks on each other that slide
+  --mechanisms  or mechanisms
   --needs R,S   and again where one of these remedies acts, without it";
 
 /// Options that a number follows, and those of the processes that this one starts.
@@ -141,6 +143,8 @@ enum Scenes {
     Rough,
     /// With friction and rolling resistance.
     Rolling,
+    /// Linkages, gears and the like, driven and limited.
+    Mechanisms,
     /// Stacks that are pushed.
     Pushed,
 }
@@ -155,6 +159,7 @@ impl Scenes {
             Self::Rough => rough_of_seed(seed),
             Self::Rolling => rolling_of_seed(seed),
             Self::Pushed => pushed_stack_of_seed(seed),
+            Self::Mechanisms => mechanism_of_seed(seed),
         }
     }
 
@@ -168,14 +173,22 @@ impl Scenes {
             Self::Rough => Some("--rough"),
             Self::Rolling => Some("--rolling"),
             Self::Pushed => Some("--pushed"),
+            Self::Mechanisms => Some("--mechanisms"),
         }
     }
 
     /// The scenes that an option asks for.
     fn asked_for(option: &str) -> Option<Self> {
-        [Self::Coarse, Self::Impulses, Self::Varied, Self::Rough, Self::Rolling, Self::Pushed]
-            .into_iter()
-            .find(|scenes| scenes.option() == Some(option))
+        let all = [
+            Self::Coarse,
+            Self::Impulses,
+            Self::Varied,
+            Self::Rough,
+            Self::Rolling,
+            Self::Pushed,
+            Self::Mechanisms,
+        ];
+        all.into_iter().find(|scenes| scenes.option() == Some(option))
     }
 }
 

@@ -157,6 +157,8 @@ pub struct ContactMotion {
     pub center_velocity: DVec2,
     /// Rate of the distance [m/s]; negative when closing.
     pub normal_velocity: f64,
+    /// What of it a drive prescribes [m/s]: no motion of the bodies has a share in it.
+    pub prescribed: f64,
     /// Jacobian of the rate of the distance, and the part of its acceleration that velocities alone cause.
     pub kinematics: GapKinematics,
 }
@@ -238,7 +240,7 @@ impl Collision {
         let (third, bilateral) = (connector.third(), connector.is_bilateral());
         let parties = Parties { primary, normal, third, bilateral, detector };
         let tolerances = Tolerances { target_gap: 0.0, ..*tolerances };
-        let described = describe_connector(connector, sample, bodies);
+        let described = describe_connector(connector, sample, bodies, time);
         Self::from_parts(parties, described, tolerances, connector.elasticity, time)
     }
 
@@ -337,7 +339,7 @@ impl Collision {
         bodies: [&Moving; 2],
         time: f64,
     ) {
-        self.update_parts(describe_connector(connector, sample, bodies), time);
+        self.update_parts(describe_connector(connector, sample, bodies, time), time);
     }
 
     fn update_parts(&mut self, (geometry, motion): (ContactGeometry, ContactMotion), time: f64) {
@@ -396,6 +398,7 @@ fn describe_connector(
     connector: &Connector,
     sample: &ConnectorSample,
     bodies: [&Moving; 2],
+    time: f64,
 ) -> (ContactGeometry, ContactMotion) {
     let [primary, normal] =
         [sample.point_a - bodies[0].pose.position, sample.point_b - bodies[1].pose.position];
@@ -414,7 +417,8 @@ fn describe_connector(
         impact_arm_normal: normal,
         arms: Arms { primary, normal },
     };
-    (geometry, describe_motion(&geometry, sample.kinematics, bodies))
+    let motion = describe_motion(&geometry, sample.kinematics, bodies);
+    (geometry, ContactMotion { prescribed: connector.prescribed_rate(time), ..motion })
 }
 
 fn describe_motion(
@@ -429,6 +433,7 @@ fn describe_motion(
         lateral_velocity: geometry.tangent().dot(impact_velocity),
         center_velocity: kinematics.center_velocity,
         normal_velocity: kinematics.rate,
+        prescribed: 0.0,
         kinematics,
     }
 }

@@ -6,6 +6,7 @@
 //! scenes instead.
 
 mod fits;
+mod mechanisms;
 mod rough;
 mod seams;
 mod shapes;
@@ -14,6 +15,7 @@ mod ties;
 mod variations;
 
 pub use fits::{struck_fit_of_seed, tight_fit_of_seed};
+pub use mechanisms::mechanism_of_seed;
 pub use rough::{pushed_stack_of_seed, rolling_of_seed, rough_of_seed};
 pub use seams::{Drop, drop_of_seed};
 pub use stacks::mixed_stack_of_seed;

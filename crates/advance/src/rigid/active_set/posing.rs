@@ -83,7 +83,7 @@ pub(super) fn pose_problem(
         let kinematics = &pull.row.kinematics;
         let offset = kinematics.acceleration(&a, &b);
         let row = region.row_between(pull.bodies, &kinematics.jacobian, offset);
-        let [least, most] = pull.bounds();
+        let [least, most] = pull.bounds(*slack);
         pull.number = row.and_then(|row| problem.add_row(&row.bounded(least, most)).ok());
     }
 }

@@ -15,6 +15,7 @@ use crate::rigid::region::touching::Region;
 use crate::rigid::shares::ROUNDED_FORCE;
 use crate::time::Time;
 use halfgap_collision::{BodyId, ConnectorId, ConnectorKind, ConnectorSample};
+use halfgap_contact::Solution;
 
 /// A motor, or dry friction in a joint, of a region's bodies.
 #[derive(Clone, Copy, Debug)]
@@ -31,15 +32,24 @@ pub(crate) struct Pulling {
 }
 
 impl Pulling {
-    /// Bounds [N] of its row.
-    pub(super) fn bounds(&self) -> [f64; 2] {
+    /// Bounds [N] of its row, which are less by a share `slack` [-] where it may hold.
+    pub(super) fn bounds(&self, slack: f64) -> [f64; 2] {
         match self.side {
             Some(side) => [-side * self.most; 2],
             None => {
-                let most = (1.0 - NARROWED) * self.most;
+                let most = (1.0 - slack.max(NARROWED)) * self.most;
                 [-most, most]
             }
         }
+    }
+
+    /// Side to which one that may hold gives way in a solution, for a problem whose `largest` acceleration [m/s^2] is given: it is at its bound,
+    /// and its rate changes. `None` if it holds.
+    fn gives_way(&self, solution: &Solution, (largest, slack): (f64, f64)) -> Option<f64> {
+        let number = self.number.filter(|_| self.side.is_none())?;
+        let (force, along) = (solution.force.get(number)?, solution.acceleration.get(number)?);
+        let is_at_bound = force.abs() >= (1.0 - ROUNDED_FORCE) * self.bounds(slack)[1];
+        (is_at_bound && along.abs() > MOVES * largest).then(|| along.signum())
     }
 }
 
@@ -77,23 +87,24 @@ pub(super) fn list_pulls(
     }
 }
 
-/// Lets those pull with all their force that cannot hold: in the last solution they are at their bound, and their rate
-/// changes. One that has just come to its speed does not go on to the same side.
+/// Lets those pull with all their force that cannot hold in the last solution. One that has just come to its speed does not go on to the
+/// same side.
 pub(super) fn give_up_holding(region: &Region, settling: &mut Settling) {
-    let Settling { pulls, given_up, solution, problem, .. } = settling;
+    let Settling { pulls, given_up, solution, problem, slack, .. } = settling;
     let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    for pull in pulls.iter().filter(|pull| pull.side.is_none()) {
-        let Some(number) = pull.number else { continue };
-        let (Some(force), Some(along)) = (solution.force.get(number), solution.acceleration.get(number))
-        else {
-            continue;
-        };
-        let is_at_bound = force.abs() >= (1.0 - ROUNDED_FORCE) * pull.bounds()[1];
-        let was = Cause::Rests(pull.id, *along > 0.0);
-        if is_at_bound && along.abs() > MOVES * largest && region.cause() != was {
-            given_up.push((pull.id, along.signum()));
+    for pull in &*pulls {
+        let Some(side) = pull.gives_way(solution, (largest, *slack)) else { continue };
+        if region.cause() != Cause::Rests(pull.id, side > 0.0) {
+            given_up.push((pull.id, side));
         }
     }
+}
+
+/// True if all hold that may.
+pub(super) fn all_hold(settling: &Settling) -> bool {
+    let Settling { pulls, solution, problem, slack, .. } = settling;
+    let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+    pulls.iter().all(|pull| pull.gives_way(solution, (largest, *slack)).is_none())
 }
 
 /// Sorts those that hold from those that act with all their force.

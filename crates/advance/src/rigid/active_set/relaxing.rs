@@ -1,6 +1,7 @@
 //! Forces of contacts that stick, shared anew where one has come to its bound.
 
 use crate::rigid::active_set::posing::pose_problem;
+use crate::rigid::active_set::pulls::all_hold;
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::active_set::slips::{NARROWED, all_stick};
 use crate::rigid::group::stage::Stage;
@@ -16,7 +17,7 @@ pub(super) fn relax(view: &View<'_>, region: &Region, settling: &mut Settling, s
     while settling.slack > NARROWED {
         settling.slack *= 0.5;
         pose_problem(view.assembly, view.connectors, region, settling, stage);
-        if settling.solve_strictly().is_ok() && all_stick(settling) {
+        if settling.solve_strictly().is_ok() && all_stick(settling) && all_hold(settling) {
             settling.slack = 0.0;
             return;
         }

@@ -141,7 +141,9 @@ fn write_report(
             let energy = 0.5 * impulse * (rate_before + rate_of(assembly, record, time));
             report.add(RowReport { collision: *record, rate_before, rate_after, impulse }, energy);
             let moved = assembly.moved_rate(record.bodies(), &record.motion.kinematics.jacobian, time);
-            report.add_drive(-impulse * moved);
+            let third = record.parties.third.filter(|(body, _)| assembly.is_moved(*body));
+            let third = third.map_or(0.0, |(body, j)| j * assembly.moving_at(body, time).angular_velocity);
+            report.add_drive(-impulse * (moved + third + record.motion.prescribed));
         }
     }
     for (record, slip) in region.records().iter().zip(impact.friction()) {

@@ -13,7 +13,8 @@ use halfgap_geometry::GapSample;
 /// Rate of the gap of a record [m/s] by the bodies' motion at a time; the bodies must still be where it was
 /// measured.
 pub(crate) fn rate_of(assembly: &Assembly, record: &Collision, time: Time) -> f64 {
-    let of_two = rate_along(assembly, record, &record.motion.kinematics.jacobian, time);
+    let of_two =
+        rate_along(assembly, record, &record.motion.kinematics.jacobian, time) + record.motion.prescribed;
     match record.parties.third {
         Some((body, j)) => of_two + j * assembly.moving_at(body, time).angular_velocity,
         None => of_two,
