@@ -371,13 +371,15 @@ impl Inspector {
         let turned = ledger.now.kinetic
             + (ledger.now.potential - self.start_potential).abs()
             + ledger.force_laws.iter().map(|law| law.work.abs()).sum::<f64>()
-            + ledger.surfaces.abs();
+            + ledger.surfaces.abs()
+            + ledger.drives.abs();
         self.turned_over = self.turned_over.max(turned);
     }
 
     fn look_at_energy(&self, world: &World) -> Result<(), (&'static str, String)> {
         let ledger = world.ledger();
-        let work = ledger.force_laws.iter().map(|law| law.work).sum::<f64>() + ledger.surfaces;
+        let work =
+            ledger.force_laws.iter().map(|law| law.work).sum::<f64>() + ledger.surfaces + ledger.drives;
         let potential = ledger.now.potential.abs().max(self.start_potential.abs());
         let tolerances = ENERGY_TOLERANCES + world.statistics().steps as f64;
         let allowed = (tolerances * self.tolerance + ENERGY_ROUNDING) * self.turned_over

@@ -10,9 +10,8 @@ use std::sync::Arc;
 /// -90 degrees [m].
 ///
 /// ```
-/// use halfgap::collision::{Connector, ConnectorKind};
 /// use halfgap::geometry::{DVec2, Shape};
-/// use halfgap::{BodyId, BodySpec, BodyState, ConnectorSpec, Limits, WorldBuilder};
+/// use halfgap::{BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Limits, WorldBuilder};
 ///
 /// // A door of 2 kg that is pushed, and comes to its stop.
 /// let mut builder = WorldBuilder::default();
@@ -24,7 +23,7 @@ use std::sync::Arc;
 /// let stop = Limits { upper: Some(0.5), ..Limits::default() };
 /// builder.add_connector(ConnectorSpec::new(pin).limits(stop));
 /// let mut world = builder.build()?;
-/// world.advance_to(1.0)?;
+/// world.advance_to(1.0, &mut |_| ())?;
 /// assert!((world.state(door).angle - 0.5).abs() < 1e-8);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

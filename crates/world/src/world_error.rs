@@ -159,6 +159,12 @@ pub enum WorldError {
         /// Error that remains [m].
         error: f64,
     },
+    /// Two connectors contradict each other, whatever the bodies do.
+    #[error("{} and {} contradict each other: no motion satisfies both", connectors[0], connectors[1])]
+    Contradiction {
+        /// The connectors.
+        connectors: Box<[ConnectorName; 2]>,
+    },
     /// Something that only an advance by events simulates so far.
     #[error("{connector}: an advance by steps does not know {what} yet; use the strategy of events")]
     NeedsEvents {
@@ -168,10 +174,16 @@ pub enum WorldError {
         what: &'static str,
     },
     /// Velocities at the start cannot be made to fit the connectors.
-    #[error("{connector} comes apart at {} m/s at the start, and no velocities fit all connectors", Rounded(*rate))]
+    #[error(
+        "{connector} comes apart at {} m/s at the start, and no velocities fit all connectors{}",
+        Rounded(*rate),
+        against.as_ref().map_or_else(String::new, |other| format!("; without {other} some would"))
+    )]
     ConnectorComesApart {
         /// The connector that comes apart fastest.
         connector: ConnectorName,
+        /// Another without which velocities would fit, if there is one.
+        against: Option<Box<ConnectorName>>,
         /// Speed at which it comes apart [m/s].
         rate: f64,
     },

@@ -16,6 +16,8 @@ struct Making<'a> {
     connectors: Vec<Value>,
     /// A coordinate may be driven, and none is bounded: a drive that runs into a limit cannot go on.
     may_drive: bool,
+    /// Longest duration [s].
+    longest: f64,
     /// A coordinate is driven: another drive might contradict it.
     is_driven: bool,
 }
@@ -32,6 +34,7 @@ pub fn mechanism_of_seed(seed: u64) -> Value {
         bodies: Vec::new(),
         connectors: Vec::new(),
         may_drive,
+        longest: 4.0,
         is_driven: false,
     };
     match making.random.below(8) {
@@ -45,7 +48,7 @@ pub fn mechanism_of_seed(seed: u64) -> Value {
     }
     making.let_links_pass();
     making.scatter();
-    let Making { random, mut bodies, connectors, .. } = making;
+    let Making { random, mut bodies, connectors, longest, .. } = making;
     for body in bodies.iter_mut().filter(|_| friction) {
         body["friction"] = json!(random.between(0.0, 1.0));
     }
@@ -58,7 +61,7 @@ pub fn mechanism_of_seed(seed: u64) -> Value {
     }
     json!({
         "format": "halfgap-scene-1", "title": format!("mechanism {seed}"),
-        "run": { "duration": random.between(1.0, 4.0), "tolerance": tolerance, "output_step": 0.1 },
+        "run": { "duration": random.between(0.25, 1.0) * longest, "tolerance": tolerance, "output_step": 0.1 },
         "body": bodies, "connector": connectors, "force": forces,
     })
 }
@@ -260,7 +263,9 @@ impl Making<'_> {
     }
 
     fn atwood(&mut self) {
-        let (left, right) = (self.random.between(0.5, 2.0), self.random.between(0.5, 2.0));
+        // So deep that neither comes up to its wheel.
+        let (left, right) = (self.random.between(4.0, 6.0), self.random.between(4.0, 6.0));
+        self.longest = 0.8;
         let ratio = if self.random.chance(0.5) { 1.0 } else { self.random.between(0.3, 3.0) };
         for (name, x, drop) in [("left", -0.5, left), ("right", 0.5, right)] {
             let size = self.random.between(0.1, 0.4);
@@ -278,7 +283,7 @@ impl Making<'_> {
             pulley["elasticity"] = json!(self.random.unit());
         }
         self.connectors.push(json!({ "pulley": pulley }));
-        self.floor(-3.0);
+        self.floor(-8.0);
     }
 
     fn cart(&mut self) {

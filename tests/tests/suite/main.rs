@@ -3,6 +3,7 @@
 mod connectors_drift;
 mod dependency_tree;
 mod determinism;
+mod driven;
 mod estimate_error;
 mod friction;
 mod friction_told;

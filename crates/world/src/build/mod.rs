@@ -206,8 +206,8 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         WorldError::BadForce { law, .. }
         | WorldError::StrongForce { law, .. }
         | WorldError::UnnamedBody { law, .. } => law.parse().ok(),
-        WorldError::StopsBackToBack { stops } => {
-            let ConnectorName { index, kind, .. } = &stops[1];
+        WorldError::StopsBackToBack { stops: connectors } | WorldError::Contradiction { connectors } => {
+            let ConnectorName { index, kind, .. } = &connectors[1];
             Some(top.field("connector").element(*index).field(*kind))
         }
         WorldError::ConnectorError { connector, .. }

@@ -58,6 +58,7 @@ impl WorldBuilder {
             }
         }
         self.check_stops()?;
+        self.check_contradictions()?;
         for law in &self.forces {
             self.check_bodies(law.bodies(), || format!("force \"{}\"", law.name()))?;
         }

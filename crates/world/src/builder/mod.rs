@@ -1,7 +1,8 @@
-//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `joints` lists connectors with their parts, `drift` tells how far bodies
+//! Building a world in code: bodies, connectors and force laws. `checks` refuses bad input, `contradictions` connectors that exclude each other, `joints` lists connectors with their parts, `drift` tells how far bodies
 //! go that nothing holds to the world.
 
 mod checks;
+mod contradictions;
 mod drift;
 mod joints;
 mod moved;

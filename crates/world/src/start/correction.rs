@@ -19,6 +19,7 @@ const LARGEST_TURN: f64 = 0.1;
 const RATE_ROUNDINGS: f64 = 64.0;
 
 /// One row of a correction: J over (A, B), and the gap [m] or rate [m/s] that it is to undo.
+#[derive(Clone, Copy)]
 struct Correction {
     bodies: [BodyId; 2],
     jacobian: [f64; 6],
@@ -106,7 +107,7 @@ pub(super) fn correct_velocities(
     tolerances: &Tolerances,
 ) -> Result<Option<(ConnectorName, f64)>, WorldError> {
     let bilateral = rows(bodies, connectors).filter(|(_, connector, _)| connector.is_bilateral());
-    let (mut corrections, mut worst) = (Vec::new(), None::<(usize, f64)>);
+    let (mut corrections, mut of, mut worst) = (Vec::new(), Vec::new(), None::<(usize, f64)>);
     for (index, connector, sample) in bilateral {
         let sample = along_corner(bodies, connector, tolerances.accuracy).unwrap_or(sample);
         let (jacobian, rate) = (sample.kinematics.jacobian, sample.kinematics.rate);
@@ -117,6 +118,7 @@ pub(super) fn correct_velocities(
         {
             worst = Some((index, rate.abs()));
         }
+        of.push(index);
         corrections.push(Correction { bodies: ends, jacobian, third, offset: rate, bilateral: true });
     }
     let Some((index, rate)) = worst else { return Ok(None) };
@@ -125,7 +127,21 @@ pub(super) fn correct_velocities(
         return if rate <= tolerances.velocity_tol {
             Ok(None)
         } else {
-            Err(WorldError::ConnectorComesApart { connector, rate })
+            // Which other one stands against it?
+            let fits_without = |other: &usize| {
+                let left: Vec<_> = corrections
+                    .iter()
+                    .zip(&of)
+                    .filter(|(_, index)| *index != other)
+                    .map(|(&correction, _)| correction)
+                    .collect();
+                least_changes(bodies, &left).is_some()
+            };
+            let mut others: Vec<usize> = of.iter().copied().filter(|&other| other != index).collect();
+            others.dedup();
+            let against = others.iter().rev().find(|other| fits_without(other));
+            let against = against.map(|&other| Box::new(name_of(other, named, connectors)));
+            Err(WorldError::ConnectorComesApart { connector, rate, against })
         };
     };
     for (BodyPart { state, .. }, change) in bodies.iter_mut().zip(changes) {

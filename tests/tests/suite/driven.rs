@@ -1,0 +1,145 @@
+//! What acts on the free coordinate of a joint, gears, and connectors that contradict each other.
+
+use halfgap::scene::{Scene, SceneFormat};
+use halfgap::{BodyId, World};
+use halfgap_tests::world_of;
+use std::f64::consts::TAU;
+
+const HEAD: &str = "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = { duration = 200.0 }\n";
+const GRAVITY: &str = "[[force]]\ngravity = { acceleration = [0.0, -9.81] }\n";
+
+/// An arm of 1 m and 1 kg on a pin at the origin, on which something acts.
+fn arm(on_pin: &str) -> String {
+    format!(
+        "[[body]]\nname = \"arm\"\nshape = {{ block = {{ width = 1.0, height = 0.1 }} }}\nmass = 1.0\nposition = [0.5, 0.0]\n\
+         [[connector]]\npin = {{ a = {{ body = \"world\", point = [0.0, 0.0] }}, b = {{ body = \"arm\", point = [-0.5, 0.0] }}{on_pin} }}\n"
+    )
+}
+
+fn wheels(gears: &str) -> String {
+    let mut text = HEAD.to_owned();
+    for (name, x, spin) in [("a", 0.0, 100.0), ("b", 3.35, -42.553_191_489_361_7)] {
+        text += &format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ disc = {{ radius = 1.0 }} }}\nmass = 1.0\nposition = [{x}, 0.0]\n\
+             angular_velocity = {spin}\n\
+             [[connector]]\npin = {{ a = {{ body = \"world\", point = [{x}, 0.0] }}, b = {{ body = \"{name}\", point = [0.0, 0.0] }} }}\n"
+        );
+    }
+    text + gears
+}
+
+fn advance(world: &mut World, time: f64) {
+    world.advance_to(time, &mut |_| ()).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn a_gear_keeps_its_ratio_over_thousands_of_turns() {
+    let mut world = world_of(&wheels("[[connector]]\ngear = { a = \"a\", b = \"b\", ratio = -2.35 }\n"));
+    advance(&mut world, 200.0);
+    let [a, b] = [0, 1].map(|body| world.state(BodyId(body)).angle);
+    assert!(a > 3000.0 * TAU, "{a}");
+    assert!((a + 2.35 * b).abs() <= 1e-12 * a, "{a} {b}");
+}
+
+#[test]
+fn a_motor_holds_its_speed_while_the_load_allows() {
+    let mut world = world_of(&(HEAD.to_owned() + &arm(", motor = { speed = 2.0, max = 20.0 }") + GRAVITY));
+    for second in 1..=100 {
+        advance(&mut world, f64::from(second));
+        let spin = world.state(BodyId(0)).angular_velocity;
+        assert!((spin - 2.0).abs() <= 1e-12, "{second} s: {spin}");
+    }
+    let ledger = world.ledger();
+    assert!(ledger.integration_error().abs() < 1e-6, "{ledger:?}");
+}
+
+#[test]
+fn a_driven_coordinate_is_where_its_law_tells_and_what_that_takes_is_booked() {
+    let oscillate = ", drive = { oscillate = { amplitude = 1.2, frequency = 0.7, phase = 0.3 } }";
+    let mut world = world_of(&(HEAD.to_owned() + &arm(oscillate) + GRAVITY));
+    for tenth in 1..=300 {
+        let time = 0.1 * f64::from(tenth);
+        advance(&mut world, time);
+        let (phase, state) = (TAU * 0.7 * time + 0.3, world.state(BodyId(0)));
+        let told = 1.2 * (phase.sin() - 0.3f64.sin());
+        assert!((state.angle - told).abs() <= 1e-13, "{time} s: {} for {told}", state.angle);
+        let rate = 1.2 * TAU * 0.7 * phase.cos();
+        assert!((state.angular_velocity - rate).abs() <= 1e-12 * TAU, "{time} s");
+    }
+    let ledger = world.ledger();
+    assert!(ledger.drives.abs() > 0.1 && ledger.integration_error().abs() < 1e-6, "{ledger:?}");
+}
+
+#[test]
+fn a_drive_is_not_stopped_by_an_impact_and_its_blow_is_booked() {
+    let disc = "[[body]]\nname = \"disc\"\nshape = { disc = { radius = 0.1 } }\nmass = 2.0\nposition = [0.8, 0.6]\n\
+                velocity = [0.0, -1.0]\nelasticity = 0.7\n";
+    let mut world = world_of(&(HEAD.to_owned() + &arm(", drive = { speed = 0.5 }") + disc));
+    advance(&mut world, 0.6);
+    let ledger = world.ledger();
+    assert!(world.statistics().impacts > 0 && ledger.drives != 0.0, "{ledger:?}");
+    assert!((world.state(BodyId(0)).angle - 0.3).abs() < 1e-13);
+    assert!(ledger.integration_error().abs() < 1e-8, "{ledger:?}");
+}
+
+#[test]
+fn a_limit_gives_back_a_share_of_the_speed() {
+    let spinning = arm(", limits = { upper = 0.4, elasticity = 0.5 }").replace(
+        "position = [0.5, 0.0]\n",
+        "position = [0.5, 0.0]\nangular_velocity = 2.0\nvelocity = [0.0, 1.0]\n",
+    );
+    let mut world = world_of(&(HEAD.to_owned() + &spinning));
+    advance(&mut world, 0.3);
+    let state = world.state(BodyId(0));
+    assert!((state.angle - 0.3).abs() < 1e-9 && (state.angular_velocity + 1.0).abs() < 1e-9, "{state:?}");
+}
+
+#[test]
+fn a_torque_has_no_point() {
+    let weld = "[[connector]]\nweld = { a = { body = \"world\", point = [0.0, 0.0] }, b = { body = \"arm\", point = [-0.5, 0.0] } }\n";
+    let body = arm("").split("[[connector]]").next().expect("the body comes first").to_owned();
+    let mut world = world_of(&(HEAD.to_owned() + &body + weld + GRAVITY));
+    advance(&mut world, 1.0);
+    let told: Vec<_> = world.contact_forces().iter().map(|row| (row.point.is_some(), row.torque)).collect();
+    let [(true, None), (true, None), (false, Some(torque))] = told[..] else { panic!("{told:?}") };
+    // The weld carries the weight of 9.81 N at 0.5 m: body a is the world.
+    assert!((torque + 0.5 * 9.81).abs() < 1e-9, "{torque}");
+}
+
+#[test]
+fn connectors_that_contradict_each_other_are_refused_with_both_names() {
+    let driven = |first: &str, second: &str| {
+        let second = arm(second).split_once("[[connector]]").expect("it has a connector").1.to_owned();
+        format!("{HEAD}{}[[connector]]{second}", arm(first))
+    };
+    let gear = |ratio: &str| format!("[[connector]]\ngear = {{ a = \"a\", b = \"b\", ratio = {ratio} }}\n");
+    let weld = "[[connector]]\nweld = { a = { body = \"world\", point = [0.0, 0.0] }, b = { body = \"arm\", point = [-0.5, 0.0] } }\n";
+    let mut told = String::new();
+    for text in [
+        driven(", drive = { speed = 2.0 }", ", drive = { speed = 1.0 }"),
+        wheels(&(gear("-2.35") + &gear("-2.0"))),
+        HEAD.to_owned() + &arm(", drive = { speed = 2.0 }") + weld,
+        HEAD.to_owned() + &arm(", limits = { lower = 2.0, upper = 1.0 }"),
+        HEAD.to_owned() + &arm(", motor = { speed = 2.0 }"),
+        HEAD.to_owned() + &arm(", motor = { speed = 2.0, max = inf }"),
+        HEAD.to_owned() + &arm(", drive = { speed = 2.0 }, friction_torque = 1.0"),
+        HEAD.replace("duration = 200.0", "duration = 1.0, strategy = \"steps\"")
+            + &arm(", drive = { speed = 0.0 }"),
+    ] {
+        let made =
+            Scene::parse(&text, SceneFormat::Toml).and_then(|scene| World::from_scene(&scene).map(|_| ()));
+        let error = made.expect_err(&text).to_string();
+        told += error.lines().next().unwrap_or_default();
+        told += "\n";
+    }
+    insta::assert_snapshot!(told, @r#"
+    connector[1].pin: connector 0 (pin of "world" and "arm") and connector 1 (pin of "world" and "arm") contradict each other: no motion satisfies both
+    connector[3].gear: connector 2 (gear of "a" and "b") and connector 3 (gear of "a" and "b") contradict each other: no motion satisfies both
+    connector[0].pin.drive: connector 0 (drive of "world" and "arm") comes apart at 1 m/s at the start, and no velocities fit all connectors; without connector 1 (weld of "world" and "arm") some would
+    line 10: connector[0].pin.limits: `lower` must not be above `upper`, got 2 and 1
+    line 10: connector[0].pin.motor: missing field `max`
+    line 10: connector[0].pin.motor.max: must be finite; a motor that holds its speed whatever it takes is a `drive`
+    line 10: connector[0].pin.friction_torque: has no effect on a coordinate that is driven: give either this or `drive`
+    connector[0].pin: connector 0 (pin of "world" and "arm"): an advance by steps does not know drives yet; use the strategy of events
+    "#);
+}
