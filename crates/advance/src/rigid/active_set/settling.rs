@@ -5,7 +5,7 @@ use crate::rigid::active_set::exclusion::Excluded;
 use crate::rigid::active_set::levers::Levers;
 use crate::rigid::active_set::pulls::Pulling;
 use crate::rigid::active_set::redundant::Redundant;
-use crate::rigid::active_set::slips::{Slip, for_each_push};
+use crate::rigid::active_set::slips::Slip;
 use crate::rigid::books::report::RowForce;
 use crate::rigid::contacts::friction::Axis;
 use crate::rigid::contacts::pulls::Pull;
@@ -14,8 +14,8 @@ use crate::rigid::contacts::touch::Touch;
 use crate::rigid::region::touching::Region;
 use crate::rigid::shares::NEGLIGIBLE;
 use crate::rigid::zeno::memory::StoppedSlip;
-use halfgap_collision::{BodyId, ConnectorId};
-use halfgap_contact::{Auto, InverseInertia, Problem, Settings, Solution, SolveError, Solver, WarmStart};
+use halfgap_collision::ConnectorId;
+use halfgap_contact::{Auto, Problem, Settings, Solution, SolveError, Solver, WarmStart};
 
 /// Residual that is then accepted, relative to the largest acceleration: the answer only decides which rows are active.
 const LENIENT_RESIDUAL: f64 = 1e-6;
@@ -284,44 +284,6 @@ impl Settling {
             _ => None,
         }
     }
-
-    /// Adds the accelerations M^-1 J^T f that the forces of the last solve, those of `records`, give the region's
-    /// bodies.
-    pub(crate) fn add_responses(
-        &self,
-        region: &Region,
-        records: &[usize],
-        inertia: impl Fn(BodyId) -> InverseInertia,
-        sums: &mut [[f64; 3]],
-    ) {
-        let mut push = |sides: [BodyId; 2], j: &[f64; 6], force: f64| {
-            for (side, body) in sides.into_iter().enumerate() {
-                let Some(place) = region.place(body) else { continue };
-                let InverseInertia { inverse_mass, inverse_moment } = inertia(body);
-                for (k, weight) in [inverse_mass, inverse_mass, inverse_moment].into_iter().enumerate() {
-                    sums[place][k] += weight * j[3 * side + k] * force;
-                }
-            }
-        };
-        for (&index, &force) in records.iter().zip(&self.solution.force) {
-            let record = &region.records()[index];
-            push(record.bodies(), &record.motion.kinematics.jacobian, force);
-        }
-        for_each_push(self, |place, j, force| push(region.records()[records[place]].bodies(), j, force));
-        for pull in &self.pulls {
-            let force = pull.number.and_then(|number| self.solution.force.get(number));
-            if let Some(&force) = force {
-                push(pull.bodies, &pull.row.kinematics.jacobian, force);
-            }
-        }
-        for (&index, &force) in records.iter().zip(&self.solution.force) {
-            if let Some((body, j)) = region.records()[index].parties.third
-                && let Some(place) = region.place(body)
-            {
-                sums[place][2] += inertia(body).inverse_moment * j * force;
-            }
-        }
-    }
 }
 
 impl Settling {
@@ -375,6 +337,7 @@ mod tests {
     use crate::rigid::event::life::dissolve;
     use crate::rigid::region::collecting::collect_region;
     use crate::rigid::test_scene::resting_discs;
+    use halfgap_collision::BodyId;
     use halfgap_contact::Row;
 
     #[test]

@@ -252,11 +252,6 @@ impl Assembly {
 }
 
 impl Assembly {
-    /// Number of whole turns that the angles of a body's present motion lack.
-    pub(crate) fn turns_of(&self, body: BodyId) -> f64 {
-        if body.is_world() { 0.0 } else { self.trajectory(body).turns() }
-    }
-
     /// Motion of a body at a time of its present segment; the background rests.
     pub(crate) fn moving_at(&self, body: BodyId, time: Time) -> Moving {
         if body.is_world() { Moving::BACKGROUND } else { self.trajectory(body).moving_at(time) }

@@ -4,6 +4,7 @@
 //! were too much.
 
 use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowMoment};
+use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId, GapKinematics, Moving};
 
 /// A motor, or dry friction in a joint, that acts with all its force.
@@ -29,5 +30,12 @@ impl Mechanism<'_> {
         let sample = self.measure_connector((id, 0), movings, None, None);
         let stands = self.connectors[id.index()].prescribed_rate(self.time) == 0.0;
         RowMoment { gap: if stands { sample.gap } else { row.gap }, kinematics: sample.kinematics }
+    }
+
+    /// Point [m] at which a motor or dry friction in a joint acts on its primary body, the normal, and the coefficient [m] of the body's
+    /// rotation.
+    pub(crate) fn locate_pull(&self, id: ConnectorId, sides: [&Moving; 2]) -> (DVec2, DVec2, f64) {
+        let sample = self.measure_connector((id, 0), sides, None, None);
+        (sample.point_a, sample.normal, sample.kinematics.jacobian[2])
     }
 }

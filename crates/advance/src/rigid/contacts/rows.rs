@@ -257,12 +257,6 @@ impl Mechanism<'_> {
         }
     }
 
-    /// The same for the coordinate of a motor or of dry friction in a joint.
-    pub(crate) fn locate_pull(&self, id: ConnectorId, sides: [&Moving; 2]) -> (DVec2, DVec2, f64) {
-        let sample = self.measure_connector((id, 0), sides, None, None);
-        (sample.point_a, sample.normal, sample.kinematics.jacobian[2])
-    }
-
     /// Distance [m] by which a contact may run off its features before it counts as changed.
     pub(crate) fn change_margin(&self) -> f64 {
         CHANGE_SHARE * self.tolerances.accuracy

@@ -15,9 +15,8 @@ use crate::rigid::watch::crossing::{
 };
 use crate::rigid::watch::earliest::Earliest;
 use crate::rigid::watch::overdue::find_overdue;
-use crate::rigid::watch::pulls::find_pull_stop;
 use crate::rigid::watch::releases::{firm_part, look_for_release};
-use crate::rigid::watch::slips::find_slip_stop;
+use crate::rigid::watch::slips::{find_pull_stop, find_slip_stop};
 use crate::rigid::watch::staying::{find_bounds, stays};
 use crate::rigid::watch::switches::{find_kink, find_passing, find_stop, find_switch};
 

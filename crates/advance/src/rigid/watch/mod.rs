@@ -13,7 +13,6 @@ pub(super) mod early_ends;
 pub(super) mod extending;
 pub(super) mod margins;
 pub(super) mod overdue;
-mod pulls;
 pub(super) mod releases;
 pub(super) mod slips;
 pub(super) mod staying;

@@ -1,4 +1,5 @@
-//! Slips that come to a stop within a group's segment: the speed of a contact that slips falls to zero along the dense output.
+//! Slips that come to a stop within a group's segment: the speed of a contact that slips falls to zero along the dense output. So does
+//! the rate that is left for a motor, or for dry friction in a joint, to take.
 
 use crate::rigid::contacts::friction::{Axis, Grip};
 use crate::rigid::contacts::rows::moving_of;
@@ -54,4 +55,32 @@ fn slip_at(dynamics: &Dynamics<'_>, row: usize, axis: Axis) -> f64 {
     let Grip::Slips { side, left, .. } = row.grip(axis) else { return f64::INFINITY };
     let movings = row.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
     side * (dynamics.physics.mechanism.slip_speed(row, axis, movings) - left)
+}
+
+/// Offers the first motor that comes to its speed, or joint with dry friction that comes to rest. One that sets out has no rate yet.
+pub(super) fn find_pull_stop(dynamics: &mut Dynamics<'_>, earliest: &mut Earliest) {
+    if dynamics.group.pulls().is_empty() {
+        return;
+    }
+    let watch = Watch { read: pull_at, end: SegmentEnd::PullStop, ..SLIPS };
+    let mut samples = dynamics.stage.lend_force_samples();
+    fill(&mut samples, dynamics.group.pulls().len());
+    let all = Part::all(dynamics.group.span());
+    for index in 0..NODES {
+        dynamics.place_at(node(index, all.to));
+        for (pull, sample) in samples.iter_mut().enumerate() {
+            let rate = pull_at(dynamics, pull);
+            sample[index] = if index == 0 { rate.max(0.0) } else { rate };
+        }
+    }
+    find_first(dynamics, earliest, (&samples, all), &watch);
+    dynamics.stage.take_back_force_samples(samples);
+}
+
+/// Rate [m/s] that is left for a pull to take, with the bodies in place.
+fn pull_at(dynamics: &Dynamics<'_>, pull: usize) -> f64 {
+    let pull = &dynamics.group.pulls()[pull];
+    let movings = pull.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
+    let rate = dynamics.physics.mechanism.pull_kinematics(pull.id, movings).rate - pull.left;
+    if pull.force > 0.0 { -rate } else { rate }
 }
