@@ -153,6 +153,8 @@ impl Making<'_> {
     }
 
     fn four_bar(&mut self) {
+        // Driven, a linkage that cannot turn all the way round would come to its dead point.
+        self.may_drive = false;
         let crank = self.random.between(0.3, 1.0);
         let angle = self.random.between(0.3, 2.6);
         let base = self.random.between(1.0, 3.0);
