@@ -44,6 +44,13 @@ pub enum Coordinate {
 }
 
 impl Coordinate {
+    /// The angle of body b less that of body a, with a lever of 1 m.
+    #[must_use]
+    #[inline]
+    pub fn angle(a: BodyId, b: BodyId) -> Self {
+        Self::Angle { a, b, lever: 1.0 }
+    }
+
     /// Ids of bodies a and b.
     #[must_use]
     #[inline]

@@ -138,19 +138,12 @@ impl Connector {
     #[inline]
     pub fn bodies(&self) -> [BodyId; 2] {
         match &self.kind {
-            ConnectorKind::Pin { a, b }
-            | ConnectorKind::Slot { a, b, .. }
-            | ConnectorKind::Rod { a, b, .. }
-            | ConnectorKind::Rope { a, b, .. }
-            | ConnectorKind::Weld { a, b, .. }
-            | ConnectorKind::Slider { a, b, .. }
-            | ConnectorKind::Pulley { a, b, .. } => [a.body, b.body],
-            ConnectorKind::Rail { a, .. } | ConnectorKind::RailStop { a, .. } => [a.body, BodyId::WORLD],
             ConnectorKind::Gear { a, b, .. } => [*a, *b],
             ConnectorKind::Rack { wheel, bar, .. } => [*bar, *wheel],
             ConnectorKind::Limit { coordinate, .. }
             | ConnectorKind::Drive { coordinate, .. }
             | ConnectorKind::Pull { coordinate, .. } => coordinate.bodies(),
+            _ => self.anchors().map(|end| end.map_or(BodyId::WORLD, |anchor| anchor.body)),
         }
     }
 
@@ -288,7 +281,7 @@ impl Connector {
     #[must_use]
     pub fn coordinate(&self) -> Option<Coordinate> {
         match &self.kind {
-            ConnectorKind::Pin { a, b } => Some(Coordinate::Angle { a: a.body, b: b.body, lever: 1.0 }),
+            ConnectorKind::Pin { a, b } => Some(Coordinate::angle(a.body, b.body)),
             ConnectorKind::Slot { a, b, normal, frame } => {
                 Some(Coordinate::Along { a: *a, b: *b, axis: -normal.perp(), frame: *frame })
             }

@@ -4,14 +4,15 @@ use super::bodies::Bodies;
 use super::mass;
 use crate::builder::WorldBuilder;
 use crate::force::{
-    Anchor, ConstantForce, Dashpot, ForceFrame, ForceLaw, MutualGravity, PointForce, PointPush, Push,
-    RotatingForce, Spring, TorsionDamper, TorsionSpring, Turning, Varied,
+    Anchor, ConstantForce, CoordinateDamper, CoordinateSpring, Dashpot, ForceFrame, ForceLaw, MutualGravity,
+    PointForce, PointPush, Push, RotatingForce, Spring, Turning, Varied,
 };
 use crate::scene::{
     ConstantData, FieldPath, ForceData, MutualGravityData, NamedData, PointData, PushData, RotatingData,
     SceneError, SpringData, TorsionSpringData, VaryData,
 };
 use glam::DVec2;
+use halfgap_collision::Coordinate;
 use std::sync::Arc;
 
 /// Adds a law; all bodies have been added before, in the order of the scene.
@@ -97,13 +98,14 @@ fn spring_laws(
 }
 
 fn torsion_laws(bodies: &Bodies<'_>, spring: &TorsionSpringData, name: &str) -> Vec<Arc<dyn ForceLaw>> {
-    let ends = [&spring.a, &spring.b].map(|name| bodies.find(name));
+    let [a, b] = [&spring.a, &spring.b].map(|name| bodies.find(name));
+    let angle = Coordinate::angle(a, b);
     let mut laws: Vec<Arc<dyn ForceLaw>> = Vec::new();
     if spring.stiffness > 0.0 {
-        laws.push(Arc::new(TorsionSpring::new(name, ends, spring.rest_angle, spring.stiffness)));
+        laws.push(Arc::new(CoordinateSpring::new(name, angle, spring.rest_angle, spring.stiffness)));
     }
     if spring.damping > 0.0 {
-        laws.push(Arc::new(TorsionDamper::new(format!("{name}.damping"), ends, spring.damping)));
+        laws.push(Arc::new(CoordinateDamper::new(format!("{name}.damping"), angle, spring.damping)));
     }
     laws
 }

@@ -105,6 +105,7 @@ fn movable(coordinate: &Coordinate) -> Vec<BodyId> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::law_check::{power, states, wrenches};
     use super::*;
     use crate::force::Wrench;
     use glam::DVec2;
@@ -144,5 +145,33 @@ mod tests {
                 assert!((told + slope).abs() < 1e-8, "body {body}, axis {axis}: {told} for {}", -slope);
             }
         }
+    }
+
+    #[test]
+    fn torques_are_minus_the_gradient_of_the_potential_and_opposite() {
+        let law = CoordinateSpring::new("spring", Coordinate::angle(BodyId(0), BodyId(1)), 0.3, 4.0);
+        let [a, b, _] = wrenches(&law, &states());
+        // The second body lies at -2 rad, the first at 0.4 rad.
+        assert!((b.torque - 4.0 * 2.7).abs() < 1e-14 && a.torque == -b.torque, "{} {}", a.torque, b.torque);
+        let moving = |states: &[halfgap_collision::BodyState; 3]| states.map(|state| (&state).into());
+        let energy = |angle: f64| {
+            let mut states = states();
+            states[1].angle += angle;
+            law.potential(&Snapshot::new(0.0, &moving(&states))).expect("it has one")
+        };
+        let slope = (energy(1e-4) - energy(-1e-4)) / 2e-4;
+        assert!((slope + b.torque).abs() < 1e-7, "{slope}");
+        let world = CoordinateSpring::new("", Coordinate::angle(BodyId::WORLD, BodyId(1)), 0.3, 4.0);
+        assert_eq!(world.bodies(), [BodyId(1)]);
+        assert!((wrenches(&world, &states())[1].torque - 4.0 * 2.3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_damper_takes_energy_by_the_square_of_the_speed() {
+        let law = CoordinateDamper::new("damper", Coordinate::angle(BodyId(0), BodyId(1)), 0.5);
+        // Angular velocities -1.3 and 0.8 rad/s.
+        assert!((power(&law, &states()) + 0.5 * 2.1 * 2.1).abs() < 1e-14);
+        let [a, b, _] = wrenches(&law, &states());
+        assert!((b.torque + 0.5 * 2.1).abs() < 1e-15 && a.torque == -b.torque);
     }
 }

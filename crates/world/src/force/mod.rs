@@ -1,7 +1,7 @@
 //! Force laws: forces and torques on bodies beside uniform gravity and damping.
 //!
 //! Each law is a type that implements [`ForceLaw`]: [`MutualGravity`], [`Spring`], [`Dashpot`], [`ConstantForce`], [`PointForce`],
-//! [`RotatingForce`], [`TorsionSpring`], [`TorsionDamper`], [`CoordinateSpring`], [`CoordinateDamper`], or yours. [`Varied`] lets a law vary with the time. The module `anchor` holds points that move with bodies, `sum` adds up several laws.
+//! [`RotatingForce`], [`CoordinateSpring`], [`CoordinateDamper`], or yours. [`Varied`] lets a law vary with the time. The module `anchor` holds points that move with bodies, `sum` adds up several laws.
 //!
 //! A law has a potential V only if its force is -dV/dx at all times, over all positions and angles x. Mutual gravity
 //! and springs have one; a constant force has none, although its size never changes: whether it turns with its body or
@@ -54,7 +54,6 @@ mod point_force;
 mod rotating;
 mod spring;
 mod sum;
-mod torsion_spring;
 mod vary;
 
 pub use constant::{ConstantForce, ForceFrame, Push};
@@ -66,7 +65,6 @@ pub use mutual_gravity::MutualGravity;
 pub use point_force::{PointForce, PointPush};
 pub use rotating::{RotatingForce, Turning};
 pub use spring::Spring;
-pub use torsion_spring::{TorsionDamper, TorsionSpring};
 pub use vary::{Varied, Vary, VaryError};
 /// Names a force law of a world: one that was removed keeps its id, which is not given again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -3,7 +3,7 @@
 use super::error::SaveError;
 use crate::force::{
     ConstantForce, CoordinateDamper, CoordinateSpring, Dashpot, ForceLaw, MutualGravity, PointForce,
-    RotatingForce, Spring, TorsionDamper, TorsionSpring, Varied, Vary,
+    RotatingForce, Spring, Varied, Vary,
 };
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -20,8 +20,6 @@ pub(super) enum SavedLaw {
     PointForce(PointForce),
     Rotating(RotatingForce),
     Spring(Spring),
-    TorsionDamper(TorsionDamper),
-    TorsionSpring(TorsionSpring),
     Varied(Box<Self>, Vary),
 }
 
@@ -44,8 +42,6 @@ impl SavedLaw {
             .or_else(|| any.downcast_ref().cloned().map(Self::PointForce))
             .or_else(|| any.downcast_ref().cloned().map(Self::Rotating))
             .or_else(|| any.downcast_ref().cloned().map(Self::Spring))
-            .or_else(|| any.downcast_ref().cloned().map(Self::TorsionDamper))
-            .or_else(|| any.downcast_ref().cloned().map(Self::TorsionSpring))
             .ok_or_else(|| SaveError::OwnLaw { law: law.name().to_owned() })
     }
 
@@ -59,8 +55,6 @@ impl SavedLaw {
             Self::PointForce(law) => Arc::new(law),
             Self::Rotating(law) => Arc::new(law),
             Self::Spring(law) => Arc::new(law),
-            Self::TorsionDamper(law) => Arc::new(law),
-            Self::TorsionSpring(law) => Arc::new(law),
             Self::Varied(law, vary) => Arc::new(Varied::new(law.into_law(), vary)),
         }
     }

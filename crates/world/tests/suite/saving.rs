@@ -4,13 +4,14 @@
 
 use glam::DVec2;
 use halfgap::force::{
-    ConstantForce, Dashpot, ForceFrame, ForceLaw, MutualGravity, PointForce, PointPush, Push, RotatingForce,
-    Snapshot, Spring, TorsionDamper, TorsionSpring, Turning, Varied, Vary, Wrenches,
+    ConstantForce, CoordinateDamper, CoordinateSpring, Dashpot, ForceFrame, ForceLaw, MutualGravity,
+    PointForce, PointPush, Push, RotatingForce, Snapshot, Spring, Turning, Varied, Vary, Wrenches,
 };
 use halfgap::geometry::Shape;
 use halfgap::{
-    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Event, Integrator,
-    Intervention, LoadError, RunError, SaveError, ToleranceOverrides, World, WorldBuilder, WorldSettings,
+    Anchor, BodyId, BodySpec, BodyState, Connector, ConnectorKind, ConnectorSpec, Coordinate, Event,
+    Integrator, Intervention, LoadError, RunError, SaveError, ToleranceOverrides, World, WorldBuilder,
+    WorldSettings,
 };
 use proptest::prelude::*;
 use std::sync::{Arc, LazyLock};
@@ -50,8 +51,13 @@ fn menagerie() -> (World, [BodyId; 4]) {
     builder.add_force(Arc::new(RotatingForce::new("rotor", anchor(bob, 0.0, 0.1), turning)));
     builder.add_force(Arc::new(MutualGravity::new("pull", 0.1, &[(falling, 1.0), (bob, 1.0)], &[])));
     builder.add_force(push(high, 0.01));
-    builder.add_force(Arc::new(TorsionSpring::new("wound", [BodyId::WORLD, bob], 0.3, 0.2)));
-    builder.add_force(Arc::new(TorsionDamper::new("eddies", [falling, bob], 0.01)));
+    builder.add_force(Arc::new(CoordinateSpring::new(
+        "wound",
+        Coordinate::angle(BodyId::WORLD, bob),
+        0.3,
+        0.2,
+    )));
+    builder.add_force(Arc::new(CoordinateDamper::new("eddies", Coordinate::angle(falling, bob), 0.01)));
     let nudge = PointPush { point: DVec2::new(0.0, 0.1), force: DVec2::X, ..PointPush::default() };
     let vary = Vary::table(vec![0.2, 0.7, 1.1], vec![0.0, 0.1, -0.1]).expect("a fine table");
     let nudge = PointForce::new("nudge", falling, nudge);

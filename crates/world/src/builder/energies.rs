@@ -1,0 +1,80 @@
+//! Energies by which the monitor of a world judges whether its books close.
+
+use super::TIME_TO_MOVE;
+use crate::force::Wrench;
+use crate::invariant_monitor::EnergyScales;
+use crate::settings::WorldSettings;
+use crate::world::Start;
+use halfgap_advance::rigid::BodyPart;
+use halfgap_collision::Tolerances;
+use halfgap_geometry::Aabb;
+
+/// Least kinetic energy that counts beside rounding, in machine epsilons of the energy of crossing all coordinates in
+/// the run.
+const LOST_ROUNDINGS: f64 = 1e4;
+/// Distance along which the work of the forces is lost to the accuracy of active rows, in tolerances of a body's size.
+const LOST_TOLERANCES: f64 = 10.0;
+
+/// Scales of the energy after the correction at the start, under forces [N] and torques [N m] of a size.
+pub(super) fn energy_scales(
+    bodies: &[BodyPart],
+    (forces, torques): (f64, f64),
+    start: &Start,
+    (settings, tolerances): (&WorldSettings, &Tolerances),
+) -> EnergyScales {
+    let (usual, still) = (usual_energy(bodies, forces) + torques, still_energy(bodies, settings));
+    EnergyScales {
+        usual: if usual > still { usual } else { 0.0 },
+        rough: tolerances.target_gap * forces,
+        lost: lost_energy(bodies, forces, settings) + still,
+        left: f64::EPSILON * start.energy_change.abs(),
+    }
+}
+
+/// Kinetic energy of the bodies, and work of forces of a size [N] across all of them [J].
+fn usual_energy(bodies: &[BodyPart], forces: f64) -> f64 {
+    let bounds = bodies.iter().map(|part| part.body.shape.bounds_at(&part.state.pose()));
+    let size = bounds.reduce(Aabb::union).map_or(0.0, |all| all.size().length());
+    let kinetic = bodies.iter().map(|part| part.body.kinetic_energy(&part.state));
+    kinetic.sum::<f64>() + forces * size
+}
+
+/// Work of forces of a size [N] within the tolerance of the bodies' sizes, and energy of the bodies at a speed that is
+/// rounding of their coordinates [J].
+fn lost_energy(bodies: &[BodyPart], forces: f64, settings: &WorldSettings) -> f64 {
+    let reach = movable(bodies).map(|part| part.body.shape.reach()).fold(0.0, f64::max);
+    let rounding = settings.duration.map_or(0.0, |duration| crossing_energy(bodies, duration));
+    LOST_ROUNDINGS * f64::EPSILON * rounding + forces * LOST_TOLERANCES * settings.tolerance * reach
+}
+
+/// Energy [J] of bodies that move by a rounding of their coordinates in the whole run.
+fn still_energy(bodies: &[BodyPart], settings: &WorldSettings) -> f64 {
+    let time = settings.duration.unwrap_or(TIME_TO_MOVE);
+    f64::EPSILON * f64::EPSILON * crossing_energy(bodies, time)
+}
+
+/// Twice the kinetic energy [J] of the movable bodies at the speed that covers the largest coordinate in a time [s].
+fn crossing_energy(bodies: &[BodyPart], time: f64) -> f64 {
+    let farthest = |part: &BodyPart| part.state.position.abs().max_element() + part.body.shape.reach();
+    let speed = bodies.iter().map(farthest).fold(0.0, f64::max) / time;
+    let mass: f64 = movable(bodies).map(|part| part.body.inverse_mass.recip()).sum();
+    mass * speed * speed
+}
+
+fn movable(bodies: &[BodyPart]) -> impl Iterator<Item = &BodyPart> {
+    bodies.iter().filter(|part| !part.body.is_fixed())
+}
+
+/// Sum of the sizes of the forces [N] on the movable bodies.
+pub(super) fn forces_on(bodies: &[BodyPart], wrenches: &[Wrench]) -> f64 {
+    let movable = bodies.iter().zip(wrenches).filter(|(part, _)| !part.body.is_fixed());
+    let forces =
+        movable.map(|(part, wrench)| wrench.force + part.free_motion.acceleration / part.body.inverse_mass);
+    forces.map(|force| force.length()).sum()
+}
+
+/// Sum of the sizes of the torques [N m] on the movable bodies: their work over a radian [J].
+pub(super) fn torques_on(bodies: &[BodyPart], wrenches: &[Wrench]) -> f64 {
+    let movable = bodies.iter().zip(wrenches).filter(|(part, _)| !part.body.is_fixed());
+    movable.map(|(_, wrench)| wrench.torque.abs()).sum()
+}
