@@ -159,7 +159,8 @@ impl World {
         reached: Time,
     ) -> Result<ControlFlow<()>, RunError> {
         self.now = self.now.max(reached);
-        let outcome = outcome.map_err(|error| RunError::new(error, |body| self.name(body).to_owned()));
+        self.strategy.write_driven_states(self.now, &mut self.driven);
+        let outcome = outcome.map_err(|error| RunError::new(error, &self.bodies, &self.joints));
         self.stand_guard(outcome)
     }
 }

@@ -1,10 +1,11 @@
 //! Errors that stop a run early, with the names of bodies, and the outcomes of runs.
 
-use crate::builder::LARGEST;
+use crate::builder::{Joints, LARGEST};
 use crate::finding::Finding;
-use crate::world_error::WorldError;
+use crate::world::{Named, name_among};
+use crate::world_error::{ConnectorName, WorldError};
 use halfgap_advance::rigid::{AdvanceError, Between, LARGEST_MASS_RATIO};
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, ConnectorId};
 use halfgap_contact::{ImpactError, Problem, SolveError};
 use halfgap_geometry::{Rounded, RoundedPlace};
 
@@ -120,6 +121,31 @@ pub enum RunError {
         bodies: Vec<String>,
         /// Names of the force laws that act on them.
         force_laws: Vec<String>,
+    },
+    /// A drive moves a linkage into its dead point, where nothing moves as the drive asks for.
+    #[error(
+        "at {} s the drive of {connector} comes to a dead point of the linkage, beyond which it cannot move it; let it turn less \
+         far, or use a motor, whose `max` lets it stop",
+        RoundedPlace(*time)
+    )]
+    DeadPoint {
+        /// Time of the error [s].
+        time: f64,
+        /// The connector that is driven.
+        connector: ConnectorName,
+    },
+    /// A rope over pulleys has been pulled in on one side.
+    #[error(
+        "at {} s {connector} has run out: \"{body}\" is at the wheel; end the run before, or stop \"{body}\" short of it",
+        RoundedPlace(*time)
+    )]
+    RanOut {
+        /// Time of the error [s].
+        time: f64,
+        /// The pulley.
+        connector: ConnectorName,
+        /// Name of the body at the end of the side that ran out.
+        body: String,
     },
     /// Errors of an integrator with fixed steps have grown until bodies were fast beyond all measure.
     #[error(
@@ -305,6 +331,8 @@ impl RunError {
             Self::Impact { time, .. }
             | Self::Contacts { time, .. }
             | Self::StepCollapsed { time, .. }
+            | Self::DeadPoint { time, .. }
+            | Self::RanOut { time, .. }
             | Self::RanAway { time, .. }
             | Self::Unresolved { time, .. }
             | Self::Crawls { time, .. }
@@ -325,7 +353,9 @@ impl RunError {
         }
     }
 
-    pub(crate) fn new(error: AdvanceError, name: impl Fn(BodyId) -> String) -> Self {
+    pub(crate) fn new(error: AdvanceError, bodies: &[Named], joints: &Joints) -> Self {
+        let name = |body: BodyId| name_among(bodies, body).to_owned();
+        let connector = |id: ConnectorId| joints.name(id, bodies);
         let names = |between: Between| (name(between.primary), name(between.normal));
         match error {
             AdvanceError::Impact { time, bodies, between, source } => {
@@ -340,6 +370,12 @@ impl RunError {
             AdvanceError::StepCollapsed { time, step, bodies, force_laws } => {
                 let bodies = bodies.into_iter().map(name).collect();
                 Self::StepCollapsed { time, step, bodies, force_laws }
+            }
+            AdvanceError::DeadPoint { time, drive, .. } => {
+                Self::DeadPoint { time, connector: connector(drive) }
+            }
+            AdvanceError::RanOut { time, pulley, body } => {
+                Self::RanOut { time, connector: connector(pulley), body: name(body) }
             }
             AdvanceError::RanAway { time, speed, bodies } => {
                 let bodies = bodies.into_iter().map(name).collect();

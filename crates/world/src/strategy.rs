@@ -84,6 +84,15 @@ impl Strategy {
         }
     }
 
+    /// Writes the states of what drives move, where they are exacter than [`state_at`](Self::state_at), in ascending
+    /// order of bodies, over `states`.
+    pub(crate) fn write_driven_states(&self, time: Time, states: &mut Vec<(BodyId, BodyState)>) {
+        match self {
+            Self::Events(system) => system.write_driven_states(time, states),
+            Self::Steps(_) => states.clear(),
+        }
+    }
+
     /// Place on its path near which the point of a rail or of its stop is sought; `None` for other connectors.
     pub(crate) fn rail_hint(&self, connector: ConnectorId, time: Time) -> Option<RailHint> {
         match self {

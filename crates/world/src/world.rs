@@ -97,6 +97,8 @@ pub struct World {
     pub(crate) bodies: Vec<Named>,
     pub(crate) joints: Joints,
     pub(crate) now: Time,
+    /// States at the present time that are not those of dense output: of what drives move.
+    pub(crate) driven: Vec<(BodyId, BodyState)>,
     pub(crate) warnings: Vec<String>,
     pub(crate) start: Start,
     /// The last impact reported, always an `Event::Impact`: its buffers are reused.
@@ -138,8 +140,18 @@ impl World {
         let changes = strategy.contact_changes();
         let is_odd = !changes.jam.is_empty() || !changes.undecided.is_empty();
         let owes_first_report = strategy.counts().impacts > 0 || is_odd;
-        let mut world =
-            Self { strategy, bodies, joints, now, warnings, start, told, owes_first_report, monitor };
+        let mut world = Self {
+            strategy,
+            bodies,
+            joints,
+            now,
+            driven: Vec::new(),
+            warnings,
+            start,
+            told,
+            owes_first_report,
+            monitor,
+        };
         world.monitor.turnover = Turnover::new(world.energy());
         world
     }
@@ -227,7 +239,13 @@ impl World {
     /// If the world has no such body.
     #[must_use]
     pub fn state(&self, body: BodyId) -> BodyState {
-        if body.is_world() { BodyState::default() } else { self.strategy.state_at(body, self.now) }
+        if body.is_world() {
+            return BodyState::default();
+        }
+        match self.driven.binary_search_by_key(&body, |&(driven, _)| driven) {
+            Ok(place) => self.driven[place].1,
+            Err(_) => self.strategy.state_at(body, self.now),
+        }
     }
 
     /// Kinetic and potential energy at the present time.

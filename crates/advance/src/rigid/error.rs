@@ -1,7 +1,7 @@
 //! Reasons why the advance of rigid bodies stops.
 
 use crate::rigid::parts::PartsError;
-use halfgap_collision::{BodyId, Collision};
+use halfgap_collision::{BodyId, Collision, ConnectorId};
 use halfgap_contact::{ImpactError, Problem, SolveError};
 use halfgap_geometry::{Rounded, RoundedPlace};
 
@@ -68,6 +68,26 @@ pub enum AdvanceError {
         bodies: Vec<BodyId>,
         /// Names of the force laws that act on them.
         force_laws: Vec<String>,
+    },
+    /// A drive moves a linkage into its dead point, where nothing moves as the drive asks for.
+    #[error("at {} s the drive {drive:?} has moved bodies {bodies:?} into a dead point", RoundedPlace(*time))]
+    DeadPoint {
+        /// Time at the start of the step [s].
+        time: f64,
+        /// The drive.
+        drive: ConnectorId,
+        /// The bodies that share the step.
+        bodies: Vec<BodyId>,
+    },
+    /// A rope over pulleys has been pulled in on one side.
+    #[error("at {} s nothing is left of one side of the pulley {pulley:?}", RoundedPlace(*time))]
+    RanOut {
+        /// Time at the start of the step [s].
+        time: f64,
+        /// The pulley.
+        pulley: ConnectorId,
+        /// The body at the end of that side.
+        body: BodyId,
     },
     /// Steps of a method without an error estimate are too long: they have made bodies faster than anything in the
     /// scene explains.

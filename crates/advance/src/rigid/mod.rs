@@ -25,7 +25,7 @@
 //!
 //! `system` is what callers see of all this. `parts` lists the parts of a system, `settings` how it is run, `scales` turns a
 //! tolerance into thresholds for a scene, `shares` has the orders of magnitude that decisions use, `remedies` what is done in
-//! rare cases, `agenda` is the queue of events by their sources, `forest` disjoint sets, `error` the reasons why an advance
+//! rare cases, `agenda` is the queue of events by their sources, `forest` disjoint sets, `saved_system` a system between bytes and force laws, `error` the reasons why an advance
 //! stops.
 
 mod active_set;
@@ -43,6 +43,8 @@ mod impact;
 mod parts;
 mod region;
 mod remedies;
+#[cfg(feature = "save")]
+mod saved_system;
 mod scales;
 mod search;
 mod settings;
@@ -75,11 +77,11 @@ pub use halfgap_geometry as geometry;
 pub use parts::{BodyPart, PartsError, RigidParts};
 pub(crate) use parts::{POSITIVE, check_bodies_of_force_law, keep_to};
 pub use remedies::{Remedy, RemedyCounts, RemedySet};
+#[cfg(feature = "save")]
+pub use saved_system::SavedSystem;
 pub use scales::Scales;
 pub use settings::{ExtraAcceleration, RegionSteps, RigidSettings, StepControl};
 pub use surface::{PairSurface, RowFriction, RowRolling, Surface};
 pub use surfaces::PairRule;
 pub(crate) use surfaces::PairRules;
 pub use system::RigidSystem;
-#[cfg(feature = "save")]
-pub use system::SavedSystem;

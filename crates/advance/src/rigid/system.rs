@@ -7,6 +7,7 @@
 use crate::rigid::bodies::force_law::ForceLaw;
 use crate::rigid::bodies::trajectory::Trajectory;
 use crate::rigid::books::counts::Counts;
+use crate::rigid::books::driven::write_driven_states;
 use crate::rigid::books::forces::row_forces;
 use crate::rigid::books::ledger::Ledger;
 use crate::rigid::books::report::{ContactChanges, Handled, ImpactReport, RowForce};
@@ -19,8 +20,6 @@ use crate::rigid::event::intervention::{
 };
 use crate::rigid::event::rooms::{Rooms, with_work};
 use crate::rigid::event::work::EventWork;
-#[cfg(feature = "save")]
-use crate::rigid::parts::PartsError;
 use crate::rigid::parts::{RigidParts, check_bodies_of_force_law};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::remedies::RemedyCounts;
@@ -30,7 +29,7 @@ use crate::rigid::sinking::depth::room_to_sink;
 use crate::rigid::stepping::ending::work_within;
 use crate::system::EventDriven;
 use crate::time::Time;
-use halfgap_collision::{BodyId, Connector, ConnectorId, RailHint};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, RailHint};
 use std::sync::Arc;
 
 /// System of rigid bodies that fly, collide, rest on each other, and are tied by connectors.
@@ -57,6 +56,12 @@ impl RigidSystem {
         establish(&mut rooms)?;
         finish(&mut rooms);
         Ok(Self { rooms })
+    }
+
+    /// The system of rooms that were saved.
+    #[cfg(feature = "save")]
+    pub(super) fn of_rooms(rooms: Rooms) -> Self {
+        Self { rooms }
     }
 
     /// The rooms, for tests of what happens in them.
@@ -199,6 +204,14 @@ impl RigidSystem {
         row_forces(assembly, connectors, groups, books, time)
     }
 
+    /// Writes the states at a time within the present segments of all bodies that step together with one that a drive
+    /// moves, over `states`, in ascending order of bodies. They are exactly where drives move them, which
+    /// [`Trajectory::state_at`] is only up to the error of dense output. Allocates if there are any.
+    pub fn write_driven_states(&self, time: Time, states: &mut Vec<(BodyId, BodyState)>) {
+        let Rooms { assembly, connectors, groups, .. } = &self.rooms;
+        write_driven_states(assembly, connectors, groups, time, states);
+    }
+
     /// Energy ledger at a time within the present segments.
     #[must_use]
     pub fn ledger_at(&self, time: Time) -> Ledger {
@@ -319,30 +332,5 @@ impl EventDriven for RigidSystem {
 
     fn arrive(&mut self) {
         finish(&mut self.rooms);
-    }
-}
-
-/// A system that was saved, which waits for its force laws.
-#[cfg(feature = "save")]
-#[derive(Debug, serde::Deserialize)]
-pub struct SavedSystem {
-    rooms: Rooms,
-}
-
-#[cfg(feature = "save")]
-impl SavedSystem {
-    /// The system as it was when it was saved, given the force laws that it had, all of [`RigidSystem::laws`]: it goes on
-    /// with the same bits, in a build of the same version.
-    ///
-    /// # Errors
-    /// Laws that are too many, too few, or name a body that is not there.
-    pub fn with_force_laws(self, force_laws: Vec<Arc<dyn ForceLaw>>) -> Result<RigidSystem, PartsError> {
-        let mut system = RigidSystem { rooms: self.rooms };
-        let count = system.body_count();
-        for (index, law) in force_laws.iter().enumerate() {
-            check_bodies_of_force_law(index, law.as_ref(), count)?;
-        }
-        system.rooms.assembly.restore_force_laws(force_laws)?;
-        Ok(system)
     }
 }

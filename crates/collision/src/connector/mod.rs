@@ -40,6 +40,7 @@ pub use row::ConnectorSample;
 use crate::body::BodyId;
 use crate::motion::BodyState;
 use glam::DVec2;
+use halfgap_geometry::Pose;
 use std::sync::Arc;
 
 /// Index of a connector in its world.
@@ -326,6 +327,17 @@ impl Connector {
     pub fn wheels(&self) -> Option<[DVec2; 2]> {
         match &self.kind {
             ConnectorKind::Pulley { wheels, .. } => Some(*wheels),
+            _ => None,
+        }
+    }
+
+    /// The vectors [m] from the wheels of a pulley to the points of its bodies, where these are; `None` for other connectors.
+    #[must_use]
+    pub fn sides(&self, [a, b]: [&Pose; 2]) -> Option<[DVec2; 2]> {
+        match &self.kind {
+            ConnectorKind::Pulley { a: on_a, b: on_b, wheels, .. } => {
+                Some([a.point_to_world(on_a.point) - wheels[0], b.point_to_world(on_b.point) - wheels[1]])
+            }
             _ => None,
         }
     }

@@ -2,7 +2,8 @@
 
 use super::{WorldBuilder, centered};
 use crate::connector::ConnectorSpec;
-use crate::world_error::WorldError;
+use crate::world::{Named, name_among};
+use crate::world_error::{ConnectorName, WorldError};
 use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId};
 
 /// All connectors of a world.
@@ -61,6 +62,13 @@ impl Joints {
     pub(crate) fn whole(&self, id: ConnectorId) -> ConnectorId {
         let first = self.all.len() - self.parts.of.len();
         id.index().checked_sub(first).and_then(|place| self.parts.of.get(place)).copied().unwrap_or(id)
+    }
+
+    /// Name in messages of the connector that was added of which another is a part.
+    pub(crate) fn name(&self, id: ConnectorId, bodies: &[Named]) -> ConnectorName {
+        let whole = self.whole(id).index();
+        let name_of = |body: BodyId| (!body.is_world()).then(|| name_among(bodies, body));
+        ConnectorName::new(whole, &self.all[whole], name_of)
     }
 
     /// The ids of a connector that was added and of its parts.

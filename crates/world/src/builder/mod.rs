@@ -21,7 +21,7 @@ use crate::run_error::RunError;
 use crate::settings::{AdvanceBy, WorldSettings};
 use crate::start::{Corrected, StartRules, correct_start};
 use crate::strategy::Strategy;
-use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of, name_among};
+use crate::world::{Inertia, Named, Start, World, WorldParts, energy_of};
 use crate::world_error::{ConnectorName, WorldError};
 pub(crate) use checks::LARGEST;
 use checks::world_bounds;
@@ -325,9 +325,7 @@ impl WorldBuilder {
                 Strategy::steps(parts, stepping_settings(settings, (step, residual), &scales), now)
             }
         }
-        .map_err(|error| WorldError::Start {
-            source: RunError::new(error, |body| name_among(&named, body).to_owned()),
-        })?;
+        .map_err(|error| WorldError::Start { source: RunError::new(error, &named, &joints) })?;
         Ok(World::new(WorldParts { strategy, bodies: named, joints, now, warnings, start, monitor }))
     }
 

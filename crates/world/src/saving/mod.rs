@@ -103,7 +103,10 @@ impl World {
             .strategy
             .with_force_laws(force_laws)
             .map_err(|error| LoadError::Unreadable { reason: error.to_string() })?;
+        let mut driven = Vec::new();
+        strategy.write_driven_states(content.now, &mut driven);
         Ok(Self {
+            driven,
             joints: Joints::restored(strategy.connectors().to_vec(), content.parts),
             strategy,
             bodies: content.bodies,

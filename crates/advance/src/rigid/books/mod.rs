@@ -4,10 +4,12 @@
 //! nothing.
 //!
 //! `all`: the books of a system · `counts`, `ledger`, `report`: their parts · `works`: the ledger within present segments ·
-//! `forces`: those of active rows · `heat`: that of each contact · `impacts`, `energy`: what is booked when.
+//! `forces`: those of active rows · `driven`: states
+//! on the rows of drives · `heat`: that of each contact · `impacts`, `energy`: what is booked when.
 
 pub(super) mod all;
 pub(super) mod counts;
+pub(super) mod driven;
 pub(super) mod energy;
 pub(super) mod forces;
 mod heat;

@@ -133,7 +133,7 @@ fn extend_group(rooms: &mut Rooms, mut group: Box<Group>) -> Result<(), AdvanceE
     }
     rooms.books.note_segment();
     if let Err(failure) = outcome {
-        let error = step_error(&rooms.assembly, &group, failure);
+        let error = step_error(&rooms.assembly, &rooms.connectors, &group, failure);
         give_up(&mut rooms.assembly, &mut rooms.connectors, &group);
         let may_jump = matches!(failure, StepFailure::Collapsed(_)) && group.slips();
         if may_jump && rooms.zeno.note_collapse(leader, group.bodies(), group.start()) {
@@ -185,11 +185,20 @@ fn fly_along(assembly: &mut Assembly, group: &Group) {
     }
 }
 
-fn step_error(assembly: &Assembly, group: &Group, failure: StepFailure) -> AdvanceError {
+fn step_error(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    group: &Group,
+    failure: StepFailure,
+) -> AdvanceError {
     let (time, bodies) = (group.start().seconds(), group.bodies().to_vec());
     let force_laws = names_of_force_laws(assembly, group);
     match failure {
-        StepFailure::Collapsed(step) => AdvanceError::StepCollapsed { time, step, bodies, force_laws },
+        StepFailure::Collapsed(step) => match group.drive(connectors).filter(|_| group.is_near_singular()) {
+            Some(drive) => AdvanceError::DeadPoint { time, drive, bodies },
+            None => AdvanceError::StepCollapsed { time, step, bodies, force_laws },
+        },
+        StepFailure::RanOut(pulley, body) => AdvanceError::RanOut { time, pulley, body },
         StepFailure::RanAway(speed) => AdvanceError::RanAway { time, speed, bodies },
         StepFailure::Unresolved(length) => {
             let bodies = so_far_apart(assembly, group, length).map_or(bodies, Vec::from);

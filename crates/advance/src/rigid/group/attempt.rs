@@ -10,6 +10,7 @@ use crate::rigid::group::tools::Tools;
 use crate::rigid::remedies::Remedy;
 use crate::rigid::settings::StepControl;
 use crate::rigid::shares::{ROUNDINGS, ROUNDS, SMALL, TINY};
+use halfgap_collision::{BodyId, ConnectorId};
 
 /// Largest factor by which steps of smooth motions grow at once: after larger ones errors follow the tolerance less
 /// well.
@@ -24,8 +25,16 @@ pub(crate) enum StepFailure {
     Collapsed(f64),
     /// Steps without an error estimate have made a body this fast [m/s], which nothing in the scene explains.
     RanAway(f64),
+    /// The rope of a pulley has been pulled in on the side of a body.
+    RanOut(ConnectorId, BodyId),
     /// Forces vary over this length [m], which rounding of positions does not resolve.
     Unresolved(f64),
+}
+
+impl StepFailure {
+    fn ran_out((pulley, body): (ConnectorId, BodyId)) -> Self {
+        Self::RanOut(pulley, body)
+    }
 }
 
 /// A step on trial.
@@ -73,7 +82,8 @@ impl Dynamics<'_> {
                 // law's change of branch between: then the rates noted there are those of another branch.
                 let asks = std::mem::take(&mut may_ask_again) && self.renew_rates();
                 if !asks || !self.physics.remedies.act(Remedy::RenewedRates) {
-                    return Err(StepFailure::Collapsed(attempt.step));
+                    let collapsed = StepFailure::Collapsed(attempt.step);
+                    return Err(self.ran_out(false).map_or(collapsed, StepFailure::ran_out));
                 }
                 attempt.step = proposed;
                 continue;
@@ -107,7 +117,7 @@ impl Dynamics<'_> {
                     return Err(StepFailure::RanAway(speed));
                 }
                 self.follow_rails();
-                return Ok(energy);
+                return self.ran_out(true).map_or(Ok(energy), |gone| Err(StepFailure::ran_out(gone)));
             }
             let factor = method.step_factor(error);
             [attempt.natural, attempt.step] = self.group.kept.shorter_lengths(attempt.step, factor, method);

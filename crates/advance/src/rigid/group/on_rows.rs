@@ -10,6 +10,15 @@ use crate::rigid::group::projection::ALL_OF_IT;
 use crate::rigid::shares::ROUNDS;
 
 impl Dynamics<'_> {
+    /// The state at an offset [s] of the segment, moved onto the active rows: dense output is off them by its error.
+    pub(crate) fn state_on_rows(&mut self, offset: f64) -> &[f64] {
+        self.find_state_at(offset);
+        let mut state = std::mem::take(&mut self.stage.trial);
+        self.move_onto_rows(&mut state, offset);
+        self.stage.trial = state;
+        &self.stage.trial
+    }
+
     /// Finds the rates of a state once it is moved onto the active rows.
     pub(crate) fn find_rates_on_rows(&mut self, offset: f64, state: &[f64], rates: &mut [f64]) {
         if !self.physics.projects {
@@ -29,7 +38,8 @@ impl Dynamics<'_> {
         let is_passing = self.passes_by_rows();
         let noise = if is_passing { self.noise(state, length) } else { 0.0 };
         // Near a bifurcation point every digit counts; elsewhere the next round adds what rough forces lack.
-        let respond = if self.group.kept.may_near_singular() { Self::respond } else { Self::respond_roughly };
+        let every_digit = self.group.kept.may_near_singular() || self.group.tree.is_used();
+        let respond = if every_digit { Self::respond } else { Self::respond_roughly };
         let mut row_rates = std::mem::take(&mut self.stage.rates);
         for _ in 0..ROUNDS {
             let error = self.measure_errors(state, offset, &mut row_rates);

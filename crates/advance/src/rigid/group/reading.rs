@@ -1,14 +1,14 @@
 //! What others may read of a group.
 
 use crate::ode::SegmentPolynomial;
-use crate::rigid::connectors::store::Stop;
+use crate::rigid::connectors::store::{Connectors, Stop};
 use crate::rigid::contacts::pulls::Pull;
 use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::physics::Physics;
 use crate::rigid::group::state::{Group, SegmentEnd, Work};
 use crate::rigid::group::stiffness::Stiffness;
 use crate::time::Time;
-use halfgap_collision::BodyId;
+use halfgap_collision::{BodyId, ConnectorId};
 
 impl Group {
     /// Its bodies, ascending.
@@ -187,6 +187,19 @@ impl Group {
         let trajectories = physics.mechanism.trajectories;
         let of_moved = self.moved.iter().filter_map(|body| trajectories[body.index()].next_kink(after));
         of_laws.chain(of_drives).chain(of_moved).reduce(f64::min)
+    }
+
+    /// A drive among its rows.
+    pub(crate) fn drive(&self, connectors: &Connectors) -> Option<ConnectorId> {
+        self.rows.iter().find_map(|row| match row.source {
+            RowSource::Connector(id, _) => connectors.connector(id).is_driven().then_some(id),
+            RowSource::Contact(_) | RowSource::Anchor(_) | RowSource::Pull(_) => None,
+        })
+    }
+
+    /// True if its last step came so near a bifurcation point that its rows hardly hold each for itself.
+    pub(crate) fn is_near_singular(&self) -> bool {
+        self.kept.is_near_singular()
     }
 
     /// The stops.
