@@ -29,6 +29,8 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConnectorSpec {
+    /// Name in messages, if it has one.
+    pub name: Option<String>,
     /// The connector. Angles and places that it keeps, as a weld or a gear does, are those that the bodies have at the start.
     pub connector: Connector,
     /// Whether the bodies collide with each other even if a pin, slot, weld or slider joins them.
@@ -90,7 +92,14 @@ impl ConnectorSpec {
     /// acts on the free coordinate.
     #[must_use]
     pub fn new(connector: Connector) -> Self {
-        Self { connector, collide: false, align: false, on_coordinate: OnCoordinate::default() }
+        Self { name: None, connector, collide: false, align: false, on_coordinate: OnCoordinate::default() }
+    }
+
+    /// The same with a name, which messages tell.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
     }
 
     /// The same with a motor on its free coordinate.

@@ -288,8 +288,7 @@ impl World {
             let zone = if connector.is_bilateral() { 0.0 } else { self.tolerances().accuracy.max(sinks) };
             let allowed = at_target.max(zone);
             if error.is_nan() || error > allowed {
-                let name = |body: BodyId| (!body.is_world()).then(|| self.name(body));
-                let connector = ConnectorName::new(index.index(), connector, name);
+                let connector = self.joints.name(index, &self.bodies);
                 findings.push(Finding::ConnectorOff { connector, error, time: self.time() });
             }
         }

@@ -124,14 +124,14 @@ pub enum RunError {
     },
     /// A drive moves a linkage into its dead point, where nothing moves as the drive asks for.
     #[error(
-        "at {} s the drive of {connector} comes to a dead point of the linkage, beyond which it cannot move it; let it turn less \
+        "at {} s {connector} comes to a dead point of the linkage, beyond which it cannot move it; let it turn less \
          far, or use a motor, whose `max` lets it stop",
         RoundedPlace(*time)
     )]
     DeadPoint {
         /// Time of the error [s].
         time: f64,
-        /// The connector that is driven.
+        /// The drive.
         connector: ConnectorName,
     },
     /// A rope over pulleys has been pulled in on one side.

@@ -260,6 +260,8 @@ pub struct ConnectorName {
     /// Kind, as in scene files.
     #[cfg_attr(feature = "save", serde(with = "crate::saving::kind"))]
     pub kind: KindName,
+    /// Its own name, if it has one.
+    pub name: Option<String>,
     /// Name of body a.
     pub first: String,
     /// Name of body b.
@@ -269,18 +271,21 @@ pub struct ConnectorName {
 impl ConnectorName {
     /// Makes the name of a connector; `name_of` returns the name of a body, and `None` for the background.
     pub(crate) fn new<'a>(
-        index: usize,
+        (index, name): (usize, Option<&str>),
         connector: &Connector,
         name_of: impl Fn(BodyId) -> Option<&'a str>,
     ) -> Self {
         let [first, second] = connector.bodies().map(|body| name_of(body).unwrap_or(BACKGROUND).to_owned());
-        Self { index, kind: kind_name(&connector.kind), first, second }
+        Self { index, kind: kind_name(&connector.kind), name: name.map(str::to_owned), first, second }
     }
 }
 
 impl std::fmt::Display for ConnectorName {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { index, kind, first, second } = self;
-        write!(formatter, "connector {index} ({kind} of \"{first}\" and \"{second}\")")
+        let Self { index, kind, name, first, second } = self;
+        match name {
+            Some(name) => write!(formatter, "connector \"{name}\" ({kind} of \"{first}\" and \"{second}\")"),
+            None => write!(formatter, "connector {index} ({kind} of \"{first}\" and \"{second}\")"),
+        }
     }
 }

@@ -18,7 +18,7 @@ struct Making<'a> {
     may_drive: bool,
     /// Longest duration [s].
     longest: f64,
-    /// A coordinate is driven: another drive might contradict it.
+    /// A coordinate is driven, or none may be any more: another drive might contradict it.
     is_driven: bool,
 }
 
@@ -153,8 +153,6 @@ impl Making<'_> {
     }
 
     fn four_bar(&mut self) {
-        // Driven, a linkage that cannot turn all the way round would come to its dead point.
-        self.may_drive = false;
         let crank = self.random.between(0.3, 1.0);
         let angle = self.random.between(0.3, 2.6);
         let base = self.random.between(1.0, 3.0);
@@ -165,7 +163,13 @@ impl Making<'_> {
         let third = self.bar("rocker", [base, 0.0], b);
         let tilt = (b[1] - a[1]).atan2(b[0] - a[0]);
         let rocker = b[1].atan2(b[0] - base);
+        // Driven by anything but a crank that can turn all round (Grashof), a linkage would come to its dead point.
+        let lengths = [first, second, third, base];
+        let (least, most) =
+            lengths.iter().fold((f64::MAX, 0.0f64), |(least, most), l| (l.min(least), l.max(most)));
+        self.is_driven = first > least || 1.01 * 2.0 * (least + most) > lengths.iter().sum();
         self.pin(("world", [0.0, 0.0]), ("crank", [-0.5 * first, 0.0]), angle);
+        self.is_driven = true;
         self.pin(("crank", [0.5 * first, 0.0]), ("coupler", [-0.5 * second, 0.0]), tilt - angle);
         self.pin(("rocker", [0.5 * third, 0.0]), ("coupler", [0.5 * second, 0.0]), tilt - rocker);
         self.pin(("world", [base, 0.0]), ("rocker", [-0.5 * third, 0.0]), rocker);
@@ -188,6 +192,8 @@ impl Making<'_> {
             "position": [x, 0.0], "elasticity": self.random.unit(),
         }));
         self.pin(("world", [0.0, 0.0]), ("crank", [-0.5 * first, 0.0]), angle);
+        // Driven by anything else it would come to its dead point.
+        self.is_driven = true;
         self.pin(
             ("crank", [0.5 * first, 0.0]),
             ("rod", [-0.5 * second, 0.0]),

@@ -118,6 +118,27 @@ fn pins_and_springs_on_a_body_that_is_moved_keep_the_books() {
     }
 }
 
+/// Stays for a second, and then goes up at an acceleration of 2 m/s^2 all at once.
+#[derive(Debug)]
+struct SetsOut;
+
+impl PrescribedMotion for SetsOut {
+    fn at(&self, time: f64) -> MotionMoment {
+        let since = (time - 1.0).max(0.0);
+        let acceleration = if time < 1.0 { 0.0 } else { 2.0 };
+        MotionMoment { value: since * since, rate: 2.0 * since, acceleration }
+    }
+
+    fn spread(&self, from: f64, to: f64) -> MotionSpread {
+        let [first, last] = [from, to].map(|time| self.at(time));
+        MotionSpread { rate: [first.rate, last.rate], acceleration: [first.acceleration, last.acceleration] }
+    }
+
+    fn next_kink(&self, after: f64) -> Option<f64> {
+        (after < 1.0).then_some(1.0)
+    }
+}
+
 /// Stays for a second, and goes up from then on at an acceleration that grows by 1 m/s^3.
 #[derive(Debug)]
 struct Rises;
@@ -139,11 +160,11 @@ impl PrescribedMotion for Rises {
 }
 
 /// A lift that moves by a law of one's own, and a ball at rest at a height above it, in a field or none.
-fn lift(height: f64, gravity: f64) -> World {
+fn lift(law: Arc<dyn PrescribedMotion>, height: f64, gravity: f64) -> World {
     let mut builder = WorldBuilder::new(WorldSettings { tolerance: 1e-10, ..WorldSettings::default() });
     let shape = |shape: Result<Shape, _>| shape.expect("a fine size");
     let still = || MotionLaw::Uniform(0.0);
-    let motion = BodyMotion { x: still(), y: MotionLaw::Own(Arc::new(Rises)), angle: still() };
+    let motion = BodyMotion { x: still(), y: MotionLaw::Own(law), angle: still() };
     let floor = BodySpec::fixed("lift", shape(Shape::block(4.0, 1.0)), DVec2::new(0.0, -0.5));
     builder.add(BodySpec { motion: Some(motion), elasticity: 0.0, ..floor });
     let state = BodyState { position: DVec2::new(0.0, 0.5 + height), ..BodyState::default() };
@@ -155,7 +176,7 @@ fn lift(height: f64, gravity: f64) -> World {
 #[test]
 fn a_lift_of_ones_own_law_takes_up_what_it_meets() {
     for (height, gravity) in [(0.0, 9.81), (0.125, 0.0)] {
-        let mut world = lift(height, gravity);
+        let mut world = lift(Arc::new(Rises), height, gravity);
         world.advance_to(3.0, &mut |_| ()).expect("it rises");
         let [lift, ball] = [0, 1].map(|body| world.state(BodyId(body)));
         assert!((lift.position.y + 0.5 - 8.0 / 6.0).abs() < 1e-12 && (lift.velocity.y - 2.0).abs() < 1e-12);
@@ -167,6 +188,19 @@ fn a_lift_of_ones_own_law_takes_up_what_it_meets() {
         // What the lift does is the energy of the ball, and half of the blow's goes into heat.
         let meets = 0.5 * (6.0 * height).powf(2.0 / 3.0);
         assert!((ledger.impacts + ledger.captures + meets * meets).abs() < 1e-8, "{ledger:?}");
+        assert_closed(&world, 1e-8);
+    }
+}
+
+#[test]
+fn a_lift_may_set_out_all_at_once() {
+    for gravity in [9.81, 0.0] {
+        let mut world = lift(Arc::new(SetsOut), 0.0, gravity);
+        world.advance_to(3.0, &mut |_| ()).expect("it rises");
+        let ball = world.state(BodyId(1));
+        assert!((ball.position.y - 4.5).abs() < 1e-9 && (ball.velocity.y - 4.0).abs() < 1e-9, "{ball:?}");
+        let [force] = world.contact_forces()[..] else { panic!("it rides") };
+        assert!((force.force - 2.0 * (gravity + 2.0)).abs() < 1e-8, "{} N", force.force);
         assert_closed(&world, 1e-8);
     }
 }

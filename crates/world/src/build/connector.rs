@@ -28,6 +28,7 @@ pub(super) fn add_all(builder: &mut WorldBuilder, bodies: &Bodies<'_>) -> Result
         let elasticity = options.elasticity.unwrap_or(default_elasticity(bodies, data));
         let connector = Connector::new(kind, elasticity).map_err(|error| refused(&error, &field))?;
         builder.add_connector(ConnectorSpec {
+            name: data.name.clone(),
             connector,
             collide: options.collide,
             align: options.align,

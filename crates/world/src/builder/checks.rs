@@ -224,7 +224,8 @@ impl WorldBuilder {
 
     pub(super) fn connector_name(&self, index: usize) -> ConnectorName {
         let name = |body: BodyId| self.bodies.get(body.index()).map(|body| body.name.as_str());
-        ConnectorName::new(index, &self.connectors[index].connector, name)
+        let ConnectorSpec { connector, name: own, .. } = &self.connectors[index];
+        ConnectorName::new((index, own.as_deref()), connector, name)
     }
 
     fn check_bodies(&self, bodies: &[BodyId], what: impl Fn() -> String) -> Result<(), WorldError> {

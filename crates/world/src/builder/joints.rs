@@ -20,6 +20,8 @@ pub(crate) struct Joints {
 pub(crate) struct Parts {
     /// For each part the connector on whose free coordinate it acts.
     of: Vec<ConnectorId>,
+    /// Names of the connectors that were added, of those that have one.
+    names: Vec<Option<String>>,
     /// Time of the start [s].
     start: f64,
 }
@@ -64,11 +66,12 @@ impl Joints {
         id.index().checked_sub(first).and_then(|place| self.parts.of.get(place)).copied().unwrap_or(id)
     }
 
-    /// Name in messages of the connector that was added of which another is a part.
+    /// Name of a connector in messages: that of a part is the part's kind, and the number and the name of what it is a part of.
     pub(crate) fn name(&self, id: ConnectorId, bodies: &[Named]) -> ConnectorName {
         let whole = self.whole(id).index();
+        let own = self.parts.names.get(whole).and_then(Option::as_deref);
         let name_of = |body: BodyId| (!body.is_world()).then(|| name_among(bodies, body));
-        ConnectorName::new(whole, &self.all[whole], name_of)
+        ConnectorName::new((whole, own), &self.all[id.index()], name_of)
     }
 
     /// The ids of a connector that was added and of its parts.
@@ -91,7 +94,8 @@ impl WorldBuilder {
             }
         }
         added.append(&mut parts);
-        Ok(Joints { all: added, parts: Parts { of: part_of, start: self.settings.start_time } })
+        let names = self.connectors.iter().map(|spec| spec.name.clone()).collect();
+        Ok(Joints { all: added, parts: Parts { of: part_of, names, start: self.settings.start_time } })
     }
 
     /// A connector that keeps what its bodies have at the start.

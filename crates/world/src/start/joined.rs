@@ -23,9 +23,7 @@ impl ConnectorOff {
 
 /// Returns the name of a connector in messages.
 pub(super) fn name_of(index: usize, named: &[Named], connectors: &Joints) -> ConnectorName {
-    let name = |body: BodyId| named.get(body.index()).map(|body| body.name.as_str());
-    let whole = connectors.whole(ConnectorId(u32::try_from(index).unwrap_or(u32::MAX)));
-    ConnectorName::new(whole.index(), &connectors.all()[index], name)
+    connectors.name(ConnectorId(u32::try_from(index).unwrap_or(u32::MAX)), named)
 }
 
 /// Refuses the first connector whose error is larger than allowed [m].

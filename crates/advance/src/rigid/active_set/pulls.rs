@@ -3,6 +3,7 @@
 //! One whose rate is off acts with all its force. One at its speed has a row in the problem, bounded by a constant; where the bound is
 //! reached it acts with all its force from then on. Those that act so are rows, too, whose bounds are one and the same force.
 
+use crate::rigid::active_set::refining::{list_holding, refine_pulls};
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::active_set::slips::{MOVES, NARROWED};
 use crate::rigid::bodies::assembly::Assembly;
@@ -43,14 +44,36 @@ impl Pulling {
         }
     }
 
-    /// Side to which one that may hold gives way in a solution, for a problem whose `largest` acceleration [m/s^2] is given: it is at its bound,
-    /// and its rate changes. `None` if it holds.
-    fn gives_way(&self, solution: &Solution, (largest, slack): (f64, f64)) -> Option<f64> {
+    /// Force and acceleration along its row, of one that may hold, in a solution; and true if the force is at its bound.
+    pub(super) fn held(&self, solution: &Solution, slack: f64) -> Option<(f64, bool)> {
         let number = self.number.filter(|_| self.side.is_none())?;
         let (force, along) = (solution.force.get(number)?, solution.acceleration.get(number)?);
-        let is_at_bound = force.abs() >= (1.0 - ROUNDED_FORCE) * self.bounds(slack)[1];
-        (is_at_bound && along.abs() > MOVES * largest).then(|| along.signum())
+        Some((*along, force.abs() >= (1.0 - ROUNDED_FORCE) * self.bounds(slack)[1]))
     }
+
+    /// Side to which one that may hold gives way in a solution: it is at its bound, and its rate changes by more than the `least`
+    /// acceleration [m/s^2] that counts. `None` if it holds.
+    fn gives_way(&self, solution: &Solution, (least, slack): (f64, f64)) -> Option<f64> {
+        let (along, is_at_bound) = self.held(solution, slack)?;
+        (is_at_bound && along.abs() > least).then(|| along.signum())
+    }
+}
+
+/// Finds those that give way in the last solution, with the sides to which they do.
+fn find_giving(assembly: &Assembly, region: &Region, settling: &mut Settling) -> Vec<(ConnectorId, f64)> {
+    let give_way = |settling: &Settling| -> Vec<_> {
+        let Settling { pulls, solution, problem, slack, .. } = settling;
+        let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        let giving = |pull: &Pulling| Some((pull.id, pull.gives_way(solution, (MOVES * largest, *slack))?));
+        pulls.iter().filter_map(giving).collect()
+    };
+    let giving = give_way(settling);
+    if giving.is_empty() {
+        return giving;
+    }
+    list_holding(assembly, region, settling);
+    refine_pulls(assembly, region, settling);
+    give_way(settling)
 }
 
 /// Lists what pulls on the region's bodies. Motors do nothing in a jump.
@@ -89,22 +112,15 @@ pub(super) fn list_pulls(
 
 /// Lets those pull with all their force that cannot hold in the last solution. One that has just come to its speed does not go on to the
 /// same side.
-pub(super) fn give_up_holding(region: &Region, settling: &mut Settling) {
-    let Settling { pulls, given_up, solution, problem, slack, .. } = settling;
-    let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    for pull in &*pulls {
-        let Some(side) = pull.gives_way(solution, (largest, *slack)) else { continue };
-        if region.cause() != Cause::Rests(pull.id, side > 0.0) {
-            given_up.push((pull.id, side));
-        }
-    }
+pub(super) fn give_up_holding(assembly: &Assembly, region: &Region, settling: &mut Settling) {
+    let giving = find_giving(assembly, region, settling);
+    let goes_on = |&(id, side): &(ConnectorId, f64)| region.cause() == Cause::Rests(id, side > 0.0);
+    settling.given_up.extend(giving.into_iter().filter(|giving| !goes_on(giving)));
 }
 
 /// True if all hold that may.
-pub(super) fn all_hold(settling: &Settling) -> bool {
-    let Settling { pulls, solution, problem, slack, .. } = settling;
-    let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
-    pulls.iter().all(|pull| pull.gives_way(solution, (largest, *slack)).is_none())
+pub(super) fn all_hold(assembly: &Assembly, region: &Region, settling: &mut Settling) -> bool {
+    find_giving(assembly, region, settling).is_empty()
 }
 
 /// Sorts those that hold from those that act with all their force.

@@ -17,7 +17,10 @@ pub(super) fn relax(view: &View<'_>, region: &Region, settling: &mut Settling, s
     while settling.slack > NARROWED {
         settling.slack *= 0.5;
         pose_problem(view.assembly, view.connectors, region, settling, stage);
-        if settling.solve_strictly().is_ok() && all_stick(settling) && all_hold(settling) {
+        if settling.solve_strictly().is_ok()
+            && all_stick(settling)
+            && all_hold(view.assembly, region, settling)
+        {
             settling.slack = 0.0;
             return;
         }

@@ -132,7 +132,7 @@ fn solve_giving_way(
     loop {
         let solved = solve_candidates(view.assembly, view.connectors, region, settling, stage, (time, rest))?;
         if solved == Solved::Nothing || !give_way(region, settling) {
-            give_up_holding(region, settling);
+            give_up_holding(view.assembly, region, settling);
             return Ok(solved);
         }
     }

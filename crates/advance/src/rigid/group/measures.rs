@@ -6,7 +6,7 @@ use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
-use crate::rigid::shares::{HALF_ZONE, LARGE, WAY_OF_A_STEP};
+use crate::rigid::shares::{HALF_ZONE, LARGE, MINOR, WAY_OF_A_STEP};
 use glam::DVec2;
 use halfgap_collision::BodyId;
 
@@ -178,7 +178,8 @@ impl Dynamics<'_> {
     /// Writes the errors of positions and velocities that are just acceptable, one for each component.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
-        let share = self.depth_share(control);
+        // What friction and damping take adds up over a run, and so do errors of it.
+        let share = self.depth_share(control) * if self.group.loses_energy() { MINOR } else { 1.0 };
         let least = self.least_errors(share, speed);
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let clearance = any_contact.then_some(HALF_ZONE * self.physics.mechanism.tolerances.accuracy);

@@ -189,6 +189,11 @@ impl Group {
         of_laws.chain(of_drives).chain(of_moved).reduce(f64::min)
     }
 
+    /// True if friction or damping takes energy from it.
+    pub(crate) fn loses_energy(&self) -> bool {
+        self.works.iter().any(|work| matches!(work, Work::Damping | Work::Friction(_) | Work::Rubbing))
+    }
+
     /// A drive among its rows.
     pub(crate) fn drive(&self, connectors: &Connectors) -> Option<ConnectorId> {
         self.rows.iter().find_map(|row| match row.source {

@@ -71,9 +71,10 @@ fn sample_stop(dynamics: &mut Dynamics<'_>, stop: Stop, reach: f64, lap: Option<
 /// Gap of a stop [m], raised by its slack, at an offset [s].
 fn stop_at(dynamics: &mut Dynamics<'_>, stop: Stop, offset: f64) -> f64 {
     dynamics.place_at(offset);
-    let connector = &dynamics.physics.mechanism.connectors[stop.id.index()];
-    let [a, b] = connector.bodies().map(|body| moving_of(dynamics.stage.movings(), body));
-    connector.measure_near(0, a, b, stop.hint.as_ref()).gap + stop.slack
+    let mechanism = &dynamics.physics.mechanism;
+    let bodies = mechanism.connectors[stop.id.index()].bodies();
+    let sides = bodies.map(|body| moving_of(dynamics.stage.movings(), body));
+    mechanism.measure_connector((stop.id, 0), sides, None, stop.hint.as_ref()).gap + stop.slack
 }
 
 fn switch_at(dynamics: &mut Dynamics<'_>, law: usize, index: usize, offset: f64) -> f64 {
