@@ -21,6 +21,7 @@ fn engines() -> Vec<Box<dyn Engine>> {
             segments: 48,
             scale: 1.0,
             contacts: Contacts::Soft,
+            soft_joints: false,
             drives: Drives::Motor,
         }),
         Box::new(Rapier {

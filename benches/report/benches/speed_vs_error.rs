@@ -1,14 +1,15 @@
 //! Runs every scene with every engine and writes table and plots to `target/speed-vs-error`.
 //!
 //! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
-//! [--merge FILE]... [--passes N] [--gas] [--write-scenes FOLDER]`
+//! [--merge FILE]... [--passes N] [--longest SECONDS] [--gas] [--write-scenes FOLDER]`
 //!
 //! `overview.svg` has all scenes that were run without friction, motors and limits, `friction.svg` those with friction,
 //! `motors_and_limits.svg` those in which something acts on joints.
 //!
 //! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an
 //! earlier table, and `--passes` is the number of passes through everything: of equal runs the least time is kept, for
-//! a machine may be busy. `--gas` measures impacts per second of free bodies instead.
+//! a machine may be busy. `--longest` is the longest time [s] of a peer's run at ever shorter steps. `--gas` measures
+//! impacts per second of free bodies instead.
 //! `--write-scenes FOLDER` writes the scenes with their known states instead, for peers that run in a program of their
 //! own, as `peers/mujoco_runs.py` does.
 
@@ -63,6 +64,9 @@ fn options() -> Result<Options, String> {
             "--engine" => options.engine = Some(value()?),
             "--out" => options.out = value()?.into(),
             "--merge" => options.merge.push(value()?.into()),
+            "--longest" => {
+                options.effort.longest_run = value()?.parse().map_err(|_| "--longest wants seconds")?;
+            }
             "--passes" => options.passes = value()?.parse().map_err(|_| "--passes wants a number")?,
             "--gas" => options.gas = true,
             "--write-scenes" => options.write_scenes = Some(value()?.into()),

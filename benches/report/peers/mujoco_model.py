@@ -34,6 +34,9 @@ class Tuning:
     step: float
     stiff: bool
     share: float = 1.0
+    # Time constant [s] and damping ratio of constraints, if they are stiff.
+    time_constant: float = 0.0
+    damping: float = 1.0
 
 
 @dataclass
@@ -95,25 +98,32 @@ class Model:
     def __init__(self, scene, tuning):
         self.scene, self.tuning = scene, tuning
         self.links, self.loops = tree(scene)
-        self.rates, self.controls, self.actuators = [], [], []
+        self.rates, self.controls, self.actuators, self.tendons = [], [], [], []
         bodies = "".join(self.body(body) for body, link in self.links.items() if link.parent is None)
         gravity = scene["gravity"]
+        # The solver's tolerance counts in the mean inertia, with the rotors in it: it would stop at once.
+        has_rotor = "armature" in bodies
+        tolerance = ' tolerance="0"' if has_rotor or tuning.stiff else ""
         contact = "enable" if scene["collisions"] else "disable"
-        solver = 'solref="%.17g 1" solimp="0.9999 0.9999 0.001"' % (2.0 * tuning.step) if tuning.stiff else ""
+        solver = ""
+        if tuning.stiff:
+            solver = f'solref="{tuning.time_constant!r} {tuning.damping!r}" solimp="0.9999 0.9999 0.001"'
         limit = solver.replace("solref", "solreflimit").replace("solimp=", "solimplimit=")
         friction = solver.replace("solref", "solreffriction").replace("solimp=", "solimpfriction=")
         self.text = f"""<mujoco>
   <compiler angle="radian" autolimits="false"/>
-  <option timestep="{tuning.step!r}" integrator="{tuning.integrator}" gravity="{gravity[0]!r} {gravity[1]!r} 0">
+  <option timestep="{tuning.step!r}" integrator="{tuning.integrator}" gravity="{gravity[0]!r} {gravity[1]!r} 0"{tolerance}>
     <flag contact="{contact}"/>
   </option>
   <default>
     <joint {limit} {friction}/>
     <equality {solver}/>
+    <tendon {limit}/>
     <geom {solver} condim="1" contype="0" conaffinity="0"/>
   </default>
   <worldbody>{bodies}</worldbody>
   <equality>{"".join(self.loop(index) for index in self.loops)}</equality>
+  <tendon>{"".join(self.tendons)}</tendon>
   <actuator>{"".join(self.actuators)}</actuator>
 </mujoco>"""
 
@@ -148,9 +158,10 @@ class Model:
             parent = self.links[link.parent].point
             place, turn = (link.outer[0] - parent[0], link.outer[1] - parent[1]), at
         frame = f'pos="{place[0]!r} {place[1]!r} 0" quat="{math.cos(turn / 2)!r} 0 0 {math.sin(turn / 2)!r}"'
+        limits = ""
         if acts["limits"]:
             lower, upper = sorted(sign * limit - at for limit in acts["limits"])
-            joint += f' limited="true" range="{lower!r} {upper!r}"'
+            limits = f' limited="true" range="{lower!r} {upper!r}"'
         if acts["friction"]:
             joint += f' frictionloss="{acts["friction"]!r}"'
         if acts["rate"] is not None:
@@ -159,14 +170,16 @@ class Model:
         motor = acts["motor"]
         if motor and tuning.motors == "friction":
             # The rotor is between the parent and the body, which then counts from the rotor.
-            if acts["limits"]:
-                raise Unsupported("limits on the angle from a rotor that turns")
             speed = sign * motor["speed"]
-            rotor = f'type="{kind}" axis="{axis[0]!r} {axis[1]!r} {axis[2]!r}" armature="{ROTOR!r}"'
+            rotor = f'name="r{body}" type="{kind}" axis="{axis[0]!r} {axis[1]!r} {axis[2]!r}" armature="{ROTOR!r}"'
             mass = f'<inertial pos="0 0 0" mass="{ROTOR_MASS!r}" diaginertia="{ROTOR_MASS!r} {ROTOR_MASS!r} {ROTOR_MASS!r}"/>'
             before, after = f"<body {frame}><joint {rotor}/>{mass}", "</body>"
             frame = 'pos="0 0 0"'
             joint += f' frictionloss="{motor["most"]!r}"'
+            if limits:
+                both = f'<joint joint="r{body}" coef="1"/><joint joint="j{body}" coef="1"/>'
+                self.tendons.append(f"<fixed{limits}>{both}</fixed>")
+                limits = ""
             self.rates.append(speed)
             rate -= speed
         elif motor:
@@ -182,7 +195,7 @@ class Model:
         inertial = f'<inertial pos="{center[0]!r} {center[1]!r} 0" mass="{told["mass"]!r}" diaginertia="{moment!r} {moment!r} {moment!r}"/>'
         inner = "".join(self.body(child) for child, other in self.links.items() if other.parent == body)
         shape = self.shape(told["shape"], center) if scene["collisions"] else ""
-        return f'{before}<body name="b{body}" {frame}><joint {joint}/>{inertial}{shape}{inner}</body>{after}'
+        return f'{before}<body name="b{body}" {frame}><joint {joint}{limits}/>{inertial}{shape}{inner}</body>{after}'
 
     def shape(self, shape, center):
         """Discs as spheres, which touch walls in the plane; straight edges as boxes behind them."""

@@ -1,7 +1,7 @@
 """Runs the scenes of the report in MuJoCo and writes rows of its table.
 
     cargo bench -p halfgap-report --bench speed_vs_error -- --write-scenes SCENES
-    python3 benches/report/peers/mujoco_runs.py SCENES mujoco.csv [--only NAME]... [--quick]
+    python3 benches/report/peers/mujoco_runs.py SCENES mujoco.csv [--only NAME]... [--longest SECONDS]
     cargo bench -p halfgap-report --bench speed_vs_error -- --engine none --merge mujoco.csv
 
 It needs `mujoco` and `numpy`. Steps, checks, errors and repeats are those of the report's other peers: steps of 1/60 s and
@@ -143,17 +143,19 @@ def measure(scene, tuning, patience):
 def tunings(scene):
     """Ways in which a step is run: name of settings, and the tuning for the step."""
     has_motor = any(connector["motor"] for connector in scene["connectors"])
-    forms = [("actuator", 0.9), ("actuator", 0.3), ("friction", 1.0)] if has_motor else [("", 1.0)]
+    forms = [("actuator", 0.9), ("actuator", 100.0), ("friction", 1.0)] if has_motor else [("", 1.0)]
     for motors, share in forms:
         form = f" {motors}" + (f" {share}" if motors == "actuator" else "") if motors else ""
         yield f"stock{form}", lambda step, m=motors, s=share: Tuning("", "Euler", m, step, False, s)
         for integrator in INTEGRATORS:
-            make = lambda step, i=integrator, m=motors, s=share: Tuning("", i, m, step, True, s)
-            yield f"stiff {integrator}{form}", make
+            for steps, damping in ((2.0, 1.0), (2.0, 10.0), (1e-3, 1.0)) :
+                if steps < 1.0 and integrator != "discrete":
+                    continue
+                make = lambda step, i=integrator, m=motors, s=share, n=steps, d=damping: Tuning("", i, m, step, True, s, n * step, d)
+                yield f"stiff {steps:g} {damping:g} {integrator}{form}", make
 
 
-def rows(scene, quick):
-    longest, patience = (0.3, 0.02) if quick else (LONGEST, PATIENCE)
+def rows(scene, longest, patience):
     for name, make in tunings(scene):
         for refinement in range(REFINEMENTS + 1):
             count = math.ceil(STOCK_RATE * REFINEMENT**refinement * scene["grid"])
@@ -178,7 +180,8 @@ def main():
     parser.add_argument("scenes", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--only", action="append", default=[])
-    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--longest", type=float, default=LONGEST)
+    parser.add_argument("--patience", type=float, default=PATIENCE)
     options = parser.parse_args()
     with options.out.open("w", newline="") as file:
         file.write(HEAD + "\n")
@@ -187,7 +190,7 @@ def main():
             scene = json.loads(path.read_text())
             if options.only and not any(part in scene["name"] for part in options.only):
                 continue
-            for row in rows(scene, options.quick):
+            for row in rows(scene, options.longest, options.patience):
                 writer.writerow(row)
                 file.flush()
                 print(*row[:1], *row[3:5], row[7], row[12])

@@ -170,21 +170,34 @@ pub fn rapier_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
 }
 
 /// Measures Box2D over steps, substeps, segments and scales, and over the stiffness of contacts where bodies may rest on
-/// each other.
+/// each other, and over that of joints where something acts on them.
 #[must_use]
 pub fn box2d_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     let mut rows = Vec::new();
-    let mut variants =
-        vec![(1.0, 4, Contacts::Soft), (100.0, 4, Contacts::Soft), (100.0, 16, Contacts::Soft)];
+    let base = |scale: f32, substeps: i32| Box2d {
+        steps_per_check: 1,
+        substeps,
+        segments: 0,
+        scale,
+        contacts: Contacts::Soft,
+        soft_joints: false,
+        drives: Drives::Motor,
+    };
+    let mut variants = vec![base(1.0, 4), base(100.0, 4), base(100.0, 16)];
     variants.truncate(effort.variants);
-    if scene.has_friction() || scene.group() == Group::MotorsAndLimits && scene.collisions {
-        variants.extend([4, 16].map(|substeps| (100.0, substeps, Contacts::Stiff)));
+    let stiff = |substeps| Box2d { contacts: Contacts::Stiff, ..base(100.0, substeps) };
+    let has_motors = scene.group() == Group::MotorsAndLimits;
+    if scene.has_friction() || has_motors && scene.collisions {
+        variants.extend([4, 16].map(stiff));
+    }
+    if has_motors {
+        variants.extend([4, 16].map(|substeps| Box2d { soft_joints: true, ..stiff(substeps) }));
     }
     for &segments in segments(scene, effort) {
-        for &(scale, substeps, contacts) in &variants {
+        for &variant in &variants {
             for &drives in drives(scene) {
                 let make = |steps_per_check| -> Box<dyn Engine> {
-                    Box::new(Box2d { steps_per_check, substeps, segments, scale, contacts, drives })
+                    Box::new(Box2d { steps_per_check, segments, drives, ..variant })
                 };
                 refine(&make, scene, effort, &mut rows);
             }

@@ -57,6 +57,8 @@ pub struct Box2d {
     pub scale: f32,
     /// How much contacts yield.
     pub contacts: Contacts,
+    /// Joints as they come, even where lengths are scaled.
+    pub soft_joints: bool,
     /// Form of drives.
     pub drives: Drives,
 }
@@ -71,11 +73,12 @@ impl Engine for Box2d {
     }
 
     fn settings(&self) -> String {
-        let Self { steps_per_check, substeps, segments, scale, contacts, drives } = self;
+        let Self { steps_per_check, substeps, segments, scale, contacts, soft_joints, drives } = self;
         let stiff = if *contacts == Contacts::Stiff { " stiff" } else { "" };
+        let joints = if *soft_joints { " soft joints" } else { "" };
         let drives = if *drives == Drives::Moved { " moved" } else { "" };
         let segments = if *segments > 0 { format!(" segments {segments}") } else { String::new() };
-        format!("scale {scale}{stiff}{drives} steps {steps_per_check} substeps {substeps}{segments}")
+        format!("scale {scale}{stiff}{joints}{drives} steps {steps_per_check} substeps {substeps}{segments}")
     }
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
@@ -119,7 +122,8 @@ impl Running {
         let ground = world.create_body(ground).map_err(refused)?;
         let step = scene.check_grid / f64::from(settings.steps_per_check);
         let hertz = JOINT_SHARE * f64::from(settings.substeps) / step;
-        let joints = (settings.scale > 1.0).then(|| ConstraintTuning::new(hertz as f32, JOINT_DAMPING));
+        let is_tuned = settings.scale > 1.0 && !settings.soft_joints;
+        let joints = is_tuned.then(|| ConstraintTuning::new(hertz as f32, JOINT_DAMPING));
         let mut running = Self {
             world,
             bodies: Vec::new(),

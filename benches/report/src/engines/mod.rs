@@ -106,6 +106,7 @@ mod tests {
                 segments,
                 scale: 100.0,
                 contacts: Contacts::Stiff,
+                soft_joints: scene.group() == Group::MotorsAndLimits,
                 drives,
             }),
         ]
