@@ -14,6 +14,8 @@ from dataclasses import dataclass
 
 # Inertia of a rotor [kg m^2, or kg]: so much that a mechanism of some kilograms turns it by less than 1e-10 in seconds.
 ROTOR = 1e12
+# Tolerance of the solver, by default and where it is set for accuracy: its steps are Newton's.
+STOCK_TOLERANCE, TOLERANCE = 1e-8, 1e-12
 # Mass of a rotor's body, which must have one [kg].
 ROTOR_MASS = 1e-9
 # Half the thickness of walls, across the plane [m].
@@ -28,7 +30,6 @@ class Unsupported(Exception):
 class Tuning:
     """Settings of a run: see `mujoco_runs.py`."""
 
-    name: str
     integrator: str
     motors: str
     step: float
@@ -101,9 +102,11 @@ class Model:
         self.rates, self.controls, self.actuators, self.tendons = [], [], [], []
         bodies = "".join(self.body(body) for body, link in self.links.items() if link.parent is None)
         gravity = scene["gravity"]
-        # The solver's tolerance counts in the mean inertia, with the rotors in it: it would stop at once.
+        # The solver's tolerance counts in the mean inertia; with rotors in that it would stop at once.
         has_rotor = "armature" in bodies
-        tolerance = ' tolerance="0"' if has_rotor or tuning.stiff else ""
+        tolerance = TOLERANCE if tuning.stiff else STOCK_TOLERANCE
+        if has_rotor:
+            tolerance *= self.mean_inertia() / ROTOR
         contact = "enable" if scene["collisions"] else "disable"
         solver = ""
         if tuning.stiff:
@@ -112,7 +115,7 @@ class Model:
         friction = solver.replace("solref", "solreffriction").replace("solimp=", "solimpfriction=")
         self.text = f"""<mujoco>
   <compiler angle="radian" autolimits="false"/>
-  <option timestep="{tuning.step!r}" integrator="{tuning.integrator}" gravity="{gravity[0]!r} {gravity[1]!r} 0"{tolerance}>
+  <option timestep="{tuning.step!r}" integrator="{tuning.integrator}" gravity="{gravity[0]!r} {gravity[1]!r} 0" tolerance="{tolerance!r}">
     <flag contact="{contact}"/>
   </option>
   <default>
@@ -126,6 +129,10 @@ class Model:
   <tendon>{"".join(self.tendons)}</tendon>
   <actuator>{"".join(self.actuators)}</actuator>
 </mujoco>"""
+
+    def mean_inertia(self):
+        inertias = [inertia_at_joint(self.scene, body, link) for body, link in self.links.items()]
+        return sum(inertias) / len(inertias)
 
     def coordinate(self, body):
         """Coordinate of a body's joint at the start, its rate there, and the axis."""

@@ -23,7 +23,8 @@ pub(super) struct Moved {
     /// The pivot in the world [m] and in the body's coordinates [m].
     pub(super) pivot: DVec2,
     pub(super) point: DVec2,
-    /// Its rate [rad/s].
+    /// Its angle at the start [rad] and its rate [rad/s].
+    pub(super) start: f64,
     pub(super) rate: f64,
 }
 
@@ -33,7 +34,9 @@ pub(super) fn moved(scene: &Scene, drives: Drives) -> Vec<Moved> {
         let rate = on_joint.rate.filter(|_| drives == Drives::Moved)?;
         match scene.connectors.get(pin)? {
             Connector::Pin(a, b) if a.body.is_none() => {
-                Some(Moved { body: b.body?, pin, pivot: a.point, point: b.point, rate })
+                let body = b.body?;
+                let start = scene.bodies.get(body)?.start.angle;
+                Some(Moved { body, pin, pivot: a.point, point: b.point, start, rate })
             }
             _ => None,
         }

@@ -154,7 +154,7 @@ impl Running {
         let builder = match body.inertia {
             None if body.spin != 0.0 || along != DVec2::ZERO => RigidBodyBuilder::kinematic_velocity_based(),
             None => RigidBodyBuilder::fixed(),
-            Some(_) if moved.is_some() => RigidBodyBuilder::kinematic_velocity_based(),
+            Some(_) if moved.is_some() => RigidBodyBuilder::kinematic_position_based(),
             Some(inertia) => RigidBodyBuilder::dynamic().additional_mass_properties(MassProperties::new(
                 Vector::ZERO,
                 inertia.mass,
@@ -249,6 +249,7 @@ impl Running {
     fn step(&mut self) {
         self.pull_springs();
         self.tell_friction();
+        self.turn_moved();
         self.pipeline.step(
             self.gravity,
             &self.parameters,
@@ -287,6 +288,15 @@ impl Running {
                     body.add_force_at_point(vector(force), vector(place), true);
                 }
             }
+        }
+    }
+
+    /// Tells bodies that are moved where they are at the end of the step. One that is told its rate does not turn.
+    fn turn_moved(&mut self) {
+        let time = (self.steps + 1) as f64 * self.parameters.dt;
+        for moved in &self.moved {
+            let angle = moved.start + moved.rate * time;
+            self.bodies[self.handles[moved.body]].set_next_kinematic_rotation(Rotation::new(angle));
         }
     }
 
