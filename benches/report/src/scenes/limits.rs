@@ -151,13 +151,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_knee_is_bent_and_straight_by_turns_and_stays_below_its_other_limit() {
+    fn the_knee_is_bent_then_straight_then_bent_and_stays_below_its_other_limit() {
         let times: Vec<f64> = (0..=300).map(|count| 0.01 * f64::from(count)).collect();
         let (states, _) = solve(&Leg, BENT, &LEG_START, &times, 0.01);
         let bends: Vec<f64> = states.iter().map(|state| state[1] - state[0]).collect();
         let is_straight: Vec<bool> = bends.iter().map(|&bend| bend < 1e-12).collect();
         let changes = is_straight.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        assert!(changes >= 3, "{changes}");
+        assert_eq!(changes, 2);
         assert!(bends.iter().all(|&bend| (-1e-9..2.4).contains(&bend)), "{bends:?}");
     }
 
@@ -169,6 +169,6 @@ mod tests {
             kinetic - GRAVITY / LENGTH * (1.5 * state[0].cos() + 0.5 * state[1].cos())
         };
         let (states, doubt) = solve(&Leg, BENT, &LEG_START, &[0.2], 0.01);
-        assert!((energy(&states[0]) - energy(&LEG_START)).abs() < 1e-12 && doubt < 1e-13, "{doubt}");
+        assert!((energy(&states[0]) - energy(&LEG_START)).abs() < 1e-12 && doubt < 1e-12, "{doubt}");
     }
 }
