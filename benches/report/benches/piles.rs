@@ -5,6 +5,7 @@
 use halfgap_report::engines::Engine;
 use halfgap_report::engines::box2d::{Box2d, Contacts};
 use halfgap_report::engines::halfgap::Halfgap;
+use halfgap_report::engines::moved::Drives;
 use halfgap_report::engines::rapier::{Joints, Rapier, Tuning};
 use halfgap_report::pile_runs::{PileRun, run};
 use halfgap_report::scenes::piles;
@@ -20,6 +21,8 @@ fn engines() -> Vec<Box<dyn Engine>> {
             segments: 48,
             scale: 1.0,
             contacts: Contacts::Soft,
+            soft_joints: false,
+            drives: Drives::Motor,
         }),
         Box::new(Rapier {
             steps_per_check: 1,
@@ -27,6 +30,7 @@ fn engines() -> Vec<Box<dyn Engine>> {
             segments: 48,
             tuning: Tuning::Stock,
             joints: Joints::Impulse,
+            drives: Drives::Motor,
         }),
         halfgap(60.0, 0.3),
         halfgap(60.0, 1e-1),

@@ -1,17 +1,21 @@
 //! Runs every scene with every engine and writes table and plots to `target/speed-vs-error`.
 //!
 //! `cargo bench -p halfgap-report --bench speed_vs_error -- [--quick] [--only NAME]... [--engine NAME] [--out FOLDER]
-//! [--merge FILE]... [--passes N] [--gas]`
+//! [--merge FILE]... [--passes N] [--longest SECONDS] [--gas] [--write-scenes FOLDER]`
 //!
-//! `overview.svg` has all scenes without friction that were run, `friction.svg` those with it.
+//! `overview.svg` has all scenes that were run without friction, motors and limits, `friction.svg` those with friction,
+//! `motors_and_limits.svg` those in which something acts on joints.
 //!
 //! `--only` picks scenes by a part of their name, `--engine` one engine or `none`; `--merge` adds the runs of an
 //! earlier table, and `--passes` is the number of passes through everything: of equal runs the least time is kept, for
-//! a machine may be busy. `--gas` measures impacts per second of free bodies instead.
+//! a machine may be busy. `--longest` is the longest time [s] of a peer's run at ever shorter steps. `--gas` measures
+//! impacts per second of free bodies instead.
+//! `--write-scenes FOLDER` writes the scenes with their known states instead, for peers that run in a program of their
+//! own, as `peers/mujoco_runs.py` does.
 
-use halfgap_report::scene::Scene;
+use halfgap_report::scene::{Group, Scene};
 use halfgap_report::sweep::{Effort, Row, merge};
-use halfgap_report::{csv, gas, levels, plot, scenes, sweep};
+use halfgap_report::{csv, gas, levels, plot, scene_file, scenes, sweep};
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
@@ -22,6 +26,13 @@ type Sweep = fn(&Scene, &Effort) -> Vec<Row>;
 const SWEEPS: [(&str, Sweep); 3] =
     [("halfgap", sweep::halfgap_rows), ("rapier", sweep::rapier_rows), ("box2d", sweep::box2d_rows)];
 
+/// A picture for each group of scenes.
+const PICTURES: [(&str, Group); 3] = [
+    ("overview.svg", Group::Smooth),
+    ("friction.svg", Group::Friction),
+    ("motors_and_limits.svg", Group::MotorsAndLimits),
+];
+
 struct Options {
     effort: Effort,
     only: Vec<String>,
@@ -30,6 +41,7 @@ struct Options {
     merge: Vec<PathBuf>,
     passes: usize,
     gas: bool,
+    write_scenes: Option<PathBuf>,
 }
 
 fn options() -> Result<Options, String> {
@@ -41,6 +53,7 @@ fn options() -> Result<Options, String> {
         merge: Vec::new(),
         passes: 1,
         gas: false,
+        write_scenes: None,
     };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
@@ -51,8 +64,12 @@ fn options() -> Result<Options, String> {
             "--engine" => options.engine = Some(value()?),
             "--out" => options.out = value()?.into(),
             "--merge" => options.merge.push(value()?.into()),
+            "--longest" => {
+                options.effort.longest_run = value()?.parse().map_err(|_| "--longest wants seconds")?;
+            }
             "--passes" => options.passes = value()?.parse().map_err(|_| "--passes wants a number")?,
             "--gas" => options.gas = true,
+            "--write-scenes" => options.write_scenes = Some(value()?.into()),
             // Arguments that cargo adds.
             "--bench" => {}
             other => return Err(format!("unknown option {other}")),
@@ -113,6 +130,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         println!("{}: {}; {answer}", scene.name, scene.about);
     }
+    if let Some(folder) = &options.write_scenes {
+        fs::create_dir_all(folder)?;
+        for scene in scenes.iter().filter(|scene| scene.has_answer()) {
+            let file = folder.join(format!("{}.json", scene.name));
+            fs::write(file, serde_json::to_string_pretty(&scene_file::json(scene))?)?;
+        }
+        return Ok(());
+    }
     let rows = run_all(&options, &scenes)?;
     let answered = || scenes.iter().filter(|scene| scene.has_answer());
     let names: Vec<String> = answered().map(|scene| scene.name.clone()).collect();
@@ -120,14 +145,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     for name in &names {
         fs::write(options.out.join(format!("{name}.svg")), plot::scene(&rows, name)?)?;
     }
-    for (file, is_rough) in [("overview.svg", false), ("friction.svg", true)] {
-        let shown = answered().filter(|scene| scene.has_friction() == is_rough);
+    let mut tables = String::new();
+    for (file, group) in PICTURES {
+        let shown = answered().filter(|scene| scene.group() == group);
         let shown: Vec<String> = shown.map(|scene| scene.name.clone()).collect();
         if !shown.is_empty() {
             fs::write(options.out.join(file), plot::overview(&rows, &shown)?)?;
+            tables += &format!("{}\n{}\n", levels::table(&rows, &shown), levels::ratios(&rows, &shown));
         }
     }
-    let tables = format!("{}\n{}", levels::table(&rows, &names), levels::piles(&rows));
+    tables += &levels::piles(&rows);
     fs::write(options.out.join("tables.md"), &tables)?;
     println!("\n{tables}");
     Ok(())

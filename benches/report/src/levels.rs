@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 /// The errors [m] that are asked for.
 const LEVELS: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-10];
-/// The engines, in the order of the columns.
-const ENGINES: [&str; 3] = ["halfgap", "rapier", "box2d"];
+/// The peers and their titles, in the order of the columns.
+const PEERS: [(&str, &str); 3] = [("rapier", "Rapier"), ("box2d", "Box2D"), ("mujoco", "MuJoCo")];
 
 /// The cheapest of nine engines and its letter at the levels 1e-2, 1e-3, 1e-4, 1e-6 and 1e-9 m: time [ms] per simulated
 /// second.
@@ -52,43 +52,79 @@ fn cheapest(rows: &[Row], scene: &str, engine: &str, level: f64) -> Option<f64> 
     runs.map(|(time, _)| 1e3 * time).min_by(f64::total_cmp)
 }
 
-/// One line per scene and level that halfgap or a peer reaches.
+/// One line per scene and level that halfgap or a peer reaches; engines that ran on none of the scenes have no column, nor
+/// has the bar where none of them has one.
 #[must_use]
 pub fn table(rows: &[Row], scenes: &[String]) -> String {
-    let mut text = String::from(
-        "| scene | error [m] | halfgap [ms/s] | Rapier | Box2D | the bar | bar or best peer / halfgap |\n\
-         |---|---|---|---|---|---|---|\n",
-    );
+    let is_shown = |name: &str| scenes.iter().any(|scene| scene == name);
+    let ran = |engine: &str| rows.iter().any(|row| row.engine == engine && is_shown(&row.scene));
+    let peers: Vec<(&str, &str)> = PEERS.into_iter().filter(|(engine, _)| ran(engine)).collect();
+    let has_bar = BARS.iter().any(|(name, _)| is_shown(name));
+    let mut heads = vec!["scene", "error [m]", "halfgap [ms/s]"];
+    heads.extend(peers.iter().map(|(_, title)| title));
+    heads.extend(if has_bar {
+        ["the bar", "bar or best peer / halfgap"].as_slice()
+    } else {
+        &["best peer / halfgap"]
+    });
+    let mut text = format!("| {} |\n|{}\n", heads.join(" | "), "---|".repeat(heads.len()));
     for scene in scenes {
         let bars = BARS.iter().find(|(name, _)| name == scene).map(|(_, bar)| bar);
         for (index, &level) in LEVELS.iter().enumerate() {
             let bar = bars.and_then(|bar| bar.get(index).copied().flatten());
-            let times = ENGINES.map(|engine| cheapest(rows, scene, engine, level));
-            if times.iter().any(Option::is_some) || bar.is_some() {
-                push_line(&mut text, scene, level, times, bar);
+            let ours = cheapest(rows, scene, "halfgap", level);
+            let times: Vec<_> =
+                peers.iter().map(|(engine, _)| cheapest(rows, scene, engine, level)).collect();
+            if ours.is_none() && bar.is_none() && times.iter().all(Option::is_none) {
+                continue;
             }
+            let mut cells = vec![scene.clone(), format!("{level:e}"), shown(ours)];
+            cells.extend(times.iter().map(|&time| shown(time)));
+            if has_bar {
+                cells.push(bar.map_or("-".to_owned(), |(time, engine)| format!("{time} {engine}")));
+            }
+            let others = times.into_iter().chain([bar.map(|(time, _)| time)]).flatten();
+            cells.push(match (ours, others.min_by(f64::total_cmp)) {
+                (Some(ours), Some(best)) => format!("{}", number(best / ours)),
+                (Some(_), None) => "only halfgap".to_owned(),
+                (None, _) => "not reached".to_owned(),
+            });
+            let _ = writeln!(text, "| {} |", cells.join(" | "));
         }
     }
     text
 }
 
-fn push_line(text: &mut String, scene: &str, level: f64, times: [Option<f64>; 3], bar: Option<(f64, char)>) {
-    let shown = |time: Option<f64>| time.map_or("-".to_owned(), |time| number(time).to_string());
-    let [ours, rapier, box2d] = times;
-    let others = [rapier, box2d, bar.map(|(time, _)| time)].into_iter().flatten();
-    let ratio = match (ours, others.min_by(f64::total_cmp)) {
-        (Some(ours), Some(best)) => format!("{}", number(best / ours)),
-        (Some(_), None) => "only halfgap".to_owned(),
-        (None, _) => "not reached".to_owned(),
-    };
-    let bar = bar.map_or("-".to_owned(), |(time, engine)| format!("{time} {engine}"));
-    let _ = writeln!(
-        text,
-        "| {scene} | {level:e} | {} | {} | {} | {bar} | {ratio} |",
-        shown(ours),
-        shown(rapier),
-        shown(box2d)
+/// What the cheapest peer takes over what halfgap takes, a line per scene.
+#[must_use]
+pub fn ratios(rows: &[Row], scenes: &[String]) -> String {
+    let heads = LEVELS.map(|level| format!("{level:e} m"));
+    let mut text = format!(
+        "| scene | {} | at most a tenth |\n|---|{}---|\n",
+        heads.join(" | "),
+        "---|".repeat(heads.len())
     );
+    for scene in scenes {
+        let ratio = |level: f64| {
+            let peers = PEERS.iter().filter_map(|(engine, _)| cheapest(rows, scene, engine, level));
+            let best = peers.min_by(f64::total_cmp)?;
+            Some(cheapest(rows, scene, "halfgap", level).map_or(0.0, |ours| best / ours))
+        };
+        let ratios = LEVELS.map(ratio);
+        let reached = ratios.iter().flatten().count();
+        let missed = ratios.iter().flatten().filter(|&&ratio| ratio < 10.0).count();
+        let verdict = match (reached, missed) {
+            (0, _) => "no peer reaches 1e-2",
+            (_, 0) => "yes",
+            _ => "no",
+        };
+        let _ = writeln!(text, "| {scene} | {} | {verdict} |", ratios.map(shown).join(" | "));
+    }
+    text
+}
+
+fn shown(number: Option<f64>) -> String {
+    number.map_or("-".to_owned(), |value| self::number(value).to_string())
 }
 
 /// Two significant digits.

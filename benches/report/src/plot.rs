@@ -13,8 +13,12 @@ const ERRORS: (f64, f64) = (1e-13, 10.0);
 /// Times [ms per simulated second] that the axis spans.
 const TIMES: (f64, f64) = (2e-4, 2e3);
 /// Engines and their colours, which people with any colour vision can tell apart.
-const ENGINES: [(&str, RGBColor); 3] =
-    [("halfgap", RGBColor(0, 114, 178)), ("rapier", RGBColor(213, 94, 0)), ("box2d", RGBColor(0, 158, 115))];
+const ENGINES: [(&str, RGBColor); 4] = [
+    ("halfgap", RGBColor(0, 114, 178)),
+    ("rapier", RGBColor(213, 94, 0)),
+    ("box2d", RGBColor(0, 158, 115)),
+    ("mujoco", RGBColor(204, 121, 167)),
+];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -93,7 +97,7 @@ pub fn overview(rows: &[Row], names: &[String]) -> Result<String, Box<dyn Error>
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
         root.fill(&WHITE)?;
         let (head, body) = root.split_vertically(HEAD);
-        draw_head(&head)?;
+        draw_head(&head, &engines_of(rows, names))?;
         let style = Style { title: 15, label: 11, dot: 2, described: false };
         for (area, name) in body.split_evenly((lines, COLUMNS)).iter().zip(names) {
             panel(area, rows, name, &style)?;
@@ -103,10 +107,16 @@ pub fn overview(rows: &[Row], names: &[String]) -> Result<String, Box<dyn Error>
     Ok(text)
 }
 
-fn draw_head(area: &Area<'_>) -> Result<(), Box<dyn Error>> {
+/// The engines that ran on any of the scenes, with their colours.
+fn engines_of(rows: &[Row], names: &[String]) -> Vec<(&'static str, RGBColor)> {
+    let ran = |engine: &str| rows.iter().any(|row| row.engine == engine && names.contains(&row.scene));
+    ENGINES.into_iter().filter(|(engine, _)| ran(engine)).collect()
+}
+
+fn draw_head(area: &Area<'_>, engines: &[(&str, RGBColor)]) -> Result<(), Box<dyn Error>> {
     let text = "time of stepping [ms per simulated second] over largest error of a position [m]; left and low is good";
     area.draw(&Text::new(text, (12, 10), ("sans-serif", 15)))?;
-    for (place, (engine, color)) in (0..).zip(ENGINES) {
+    for (place, &(engine, color)) in (0..).zip(engines) {
         let x = 16 + 110 * place;
         area.draw(&Circle::new((x, 38), 4, color.filled()))?;
         area.draw(&Text::new(engine, (x + 10, 31), ("sans-serif", 15)))?;
@@ -133,7 +143,7 @@ fn panel(area: &Area<'_>, rows: &[Row], name: &str, style: &Style) -> Result<(),
         mesh.x_desc("largest error of a position [m]").y_desc("ms per simulated second");
     }
     mesh.draw()?;
-    for (engine, color) in ENGINES {
+    for (engine, color) in engines_of(rows, &[name.to_owned()]) {
         let runs = runs_of(rows, name, engine);
         let dots = runs.iter().map(|&run| Circle::new(run, style.dot - 1, color.mix(0.5).filled()));
         chart.draw_series(dots)?;

@@ -2,6 +2,7 @@
 //!
 //! Nothing here is of one engine: how arcs are cut into segments, or thresholds derived, is for the engines' modules.
 
+use crate::on_joint::OnJoint;
 use glam::DVec2;
 use halfgap::BodyState;
 use halfgap::geometry::{self, EdgeSpec, PathSpec};
@@ -17,6 +18,8 @@ pub struct Scene {
     pub bodies: Vec<Body>,
     /// The connectors.
     pub connectors: Vec<Connector>,
+    /// What acts on the free coordinates of connectors, each with the connector's index.
+    pub on_joints: Vec<(usize, OnJoint)>,
     /// The springs.
     pub springs: Vec<Spring>,
     /// Acceleration of all movable bodies [m/s^2].
@@ -147,6 +150,15 @@ pub enum Connector {
         /// Its direction.
         axis: DVec2,
     },
+    /// Keeps the centre of a body on a line through a point of the world, along a unit vector, and the body from turning.
+    Slider {
+        /// The body.
+        body: usize,
+        /// A point of the line [m].
+        point: DVec2,
+        /// Its direction.
+        axis: DVec2,
+    },
     /// Keeps the centre of a body on the natural cubic spline through points [m].
     Rail {
         /// The body.
@@ -154,6 +166,17 @@ pub enum Connector {
         /// The points.
         points: Vec<DVec2>,
     },
+}
+
+/// Scenes that stand in one picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Neither friction nor anything that acts on joints.
+    Smooth,
+    /// Contacts have friction.
+    Friction,
+    /// Something acts on a joint.
+    MotorsAndLimits,
 }
 
 /// A spring that pulls two points together with stiffness (length - rest length).
@@ -196,6 +219,7 @@ impl Scene {
             about: about.to_owned(),
             bodies,
             connectors: Vec::new(),
+            on_joints: Vec::new(),
             springs: Vec::new(),
             gravity: DVec2::ZERO,
             collisions: true,
@@ -224,6 +248,13 @@ impl Scene {
         self
     }
 
+    /// Sets the method by which the checks were computed.
+    #[must_use]
+    pub fn with_method(mut self, how: &str) -> Self {
+        how.clone_into(&mut self.reference);
+        self
+    }
+
     /// True if its answer is known; of other scenes only the time is measured.
     #[must_use]
     pub fn has_answer(&self) -> bool {
@@ -234,6 +265,23 @@ impl Scene {
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.bodies.iter().any(|body| body.surface.static_friction > 0.0)
+    }
+
+    /// What acts on a connector.
+    #[must_use]
+    pub fn on_joint(&self, connector: usize) -> OnJoint {
+        let found = self.on_joints.iter().find(|(index, _)| *index == connector);
+        found.map(|&(_, on_joint)| on_joint).unwrap_or_default()
+    }
+
+    /// The group in whose picture the scene is.
+    #[must_use]
+    pub fn group(&self) -> Group {
+        match (self.on_joints.is_empty(), self.has_friction()) {
+            (false, _) => Group::MotorsAndLimits,
+            (true, true) => Group::Friction,
+            (true, false) => Group::Smooth,
+        }
     }
 
     /// True if some shape has arcs that are no full circle, which engines of segments must cut up.
@@ -297,7 +345,9 @@ impl Scene {
             Connector::Rod(a, b, length) => {
                 ((self.place(a, states) - self.place(b, states)).length() - length).abs()
             }
-            Connector::Guide { body, point, axis } => (states[*body].position - *point).perp_dot(*axis).abs(),
+            Connector::Guide { body, point, axis } | Connector::Slider { body, point, axis } => {
+                (states[*body].position - *point).perp_dot(*axis).abs()
+            }
             Connector::Rail { .. } => 0.0,
         };
         self.connectors.iter().map(error).fold(0.0, f64::max)

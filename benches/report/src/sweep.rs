@@ -3,9 +3,10 @@
 use crate::engines::Engine;
 use crate::engines::box2d::{Box2d, Contacts};
 use crate::engines::halfgap::Halfgap;
+use crate::engines::moved::Drives;
 use crate::engines::rapier::{Joints, Rapier, Tuning};
 use crate::measure::{Measurement, Repeats, measure};
-use crate::scene::Scene;
+use crate::scene::{Group, Scene};
 use glam::DVec2;
 
 /// A run that was measured, or the reason why it could not be.
@@ -156,8 +157,47 @@ pub fn rapier_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     for &segments in segments(scene, effort) {
         for &joints in joints {
             for (tuning, iterations) in variants.into_iter().take(effort.variants) {
+                for &drives in drives(scene) {
+                    let make = |steps_per_check| -> Box<dyn Engine> {
+                        Box::new(Rapier { steps_per_check, iterations, segments, tuning, joints, drives })
+                    };
+                    refine(&make, scene, effort, &mut rows);
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// Measures Box2D over steps, substeps, segments and scales, and over the stiffness of contacts where bodies may rest on
+/// each other, and over that of joints where something acts on them.
+#[must_use]
+pub fn box2d_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let base = |scale: f32, substeps: i32| Box2d {
+        steps_per_check: 1,
+        substeps,
+        segments: 0,
+        scale,
+        contacts: Contacts::Soft,
+        soft_joints: false,
+        drives: Drives::Motor,
+    };
+    let mut variants = vec![base(1.0, 4), base(100.0, 4), base(100.0, 16)];
+    variants.truncate(effort.variants);
+    let stiff = |substeps| Box2d { contacts: Contacts::Stiff, ..base(100.0, substeps) };
+    let has_motors = scene.group() == Group::MotorsAndLimits;
+    if scene.has_friction() || has_motors && scene.collisions {
+        variants.extend([4, 16].map(stiff));
+    }
+    if has_motors {
+        variants.extend([4, 16].map(|substeps| Box2d { soft_joints: true, ..stiff(substeps) }));
+    }
+    for &segments in segments(scene, effort) {
+        for &variant in &variants {
+            for &drives in drives(scene) {
                 let make = |steps_per_check| -> Box<dyn Engine> {
-                    Box::new(Rapier { steps_per_check, iterations, segments, tuning, joints })
+                    Box::new(Box2d { steps_per_check, segments, drives, ..variant })
                 };
                 refine(&make, scene, effort, &mut rows);
             }
@@ -166,26 +206,10 @@ pub fn rapier_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
     rows
 }
 
-/// Measures Box2D over steps, substeps, segments and scales, and over the stiffness of contacts where bodies may rest on
-/// each other.
-#[must_use]
-pub fn box2d_rows(scene: &Scene, effort: &Effort) -> Vec<Row> {
-    let mut rows = Vec::new();
-    let mut variants =
-        vec![(1.0, 4, Contacts::Soft), (100.0, 4, Contacts::Soft), (100.0, 16, Contacts::Soft)];
-    variants.truncate(effort.variants);
-    if scene.has_friction() {
-        variants.extend([4, 16].map(|substeps| (100.0, substeps, Contacts::Stiff)));
-    }
-    for &segments in segments(scene, effort) {
-        for &(scale, substeps, contacts) in &variants {
-            let make = |steps_per_check| -> Box<dyn Engine> {
-                Box::new(Box2d { steps_per_check, substeps, segments, scale, contacts })
-            };
-            refine(&make, scene, effort, &mut rows);
-        }
-    }
-    rows
+/// Forms of drives, where there are any.
+fn drives(scene: &Scene) -> &'static [Drives] {
+    let is_driven = scene.on_joints.iter().any(|(_, on_joint)| on_joint.rate.is_some());
+    if is_driven { &[Drives::Motor, Drives::Moved] } else { &[Drives::Motor] }
 }
 
 /// Segments for a full circle; none where nothing is cut.

@@ -1,8 +1,10 @@
 //! Box2D 3.2 by its bindings `boxdd`, built with positions in double precision; all else in it is single.
 
 use super::belt::Belt;
+use super::moved::{self, Drives, Moved};
 use super::segments::corners;
 use super::{Engine, EngineError, Session};
+use crate::on_joint::OnJoint;
 use crate::scene::{Body, Connector, End, Scene, Shape, Spring};
 use boxdd::prelude::{
     BodyBuilder, BodyId, BodyType, ChainDef, ConstraintTuning, Filter, Foundation, FoundationConfig,
@@ -29,6 +31,9 @@ const JOINT_DAMPING: f32 = 2.0;
 /// at rest for loads that slip, tenfold is found out late.
 const LEAST_SLIP: f64 = 1e-6;
 
+/// What a drive may pull [N, N m]: what single precision still adds up well.
+const DRIVE_FORCE: f64 = 1e9;
+
 /// How much contacts yield.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contacts {
@@ -52,6 +57,10 @@ pub struct Box2d {
     pub scale: f32,
     /// How much contacts yield.
     pub contacts: Contacts,
+    /// Joints as they come, even where lengths are scaled.
+    pub soft_joints: bool,
+    /// Form of drives.
+    pub drives: Drives,
 }
 
 impl Engine for Box2d {
@@ -64,10 +73,12 @@ impl Engine for Box2d {
     }
 
     fn settings(&self) -> String {
-        let Self { steps_per_check, substeps, segments, scale, contacts } = self;
+        let Self { steps_per_check, substeps, segments, scale, contacts, soft_joints, drives } = self;
         let stiff = if *contacts == Contacts::Stiff { " stiff" } else { "" };
+        let joints = if *soft_joints { " soft joints" } else { "" };
+        let drives = if *drives == Drives::Moved { " moved" } else { "" };
         let segments = if *segments > 0 { format!(" segments {segments}") } else { String::new() };
-        format!("scale {scale}{stiff} steps {steps_per_check} substeps {substeps}{segments}")
+        format!("scale {scale}{stiff}{joints}{drives} steps {steps_per_check} substeps {substeps}{segments}")
     }
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
@@ -87,6 +98,7 @@ struct Running {
     joints: Option<ConstraintTuning>,
     springs: Vec<Spring>,
     belt: Option<Belt>,
+    moved: Vec<Moved>,
 }
 
 impl Running {
@@ -110,7 +122,8 @@ impl Running {
         let ground = world.create_body(ground).map_err(refused)?;
         let step = scene.check_grid / f64::from(settings.steps_per_check);
         let hertz = JOINT_SHARE * f64::from(settings.substeps) / step;
-        let joints = (settings.scale > 1.0).then(|| ConstraintTuning::new(hertz as f32, JOINT_DAMPING));
+        let is_tuned = settings.scale > 1.0 && !settings.soft_joints;
+        let joints = is_tuned.then(|| ConstraintTuning::new(hertz as f32, JOINT_DAMPING));
         let mut running = Self {
             world,
             bodies: Vec::new(),
@@ -122,12 +135,15 @@ impl Running {
             joints: joints.transpose().map_err(refused)?,
             springs: scene.springs.clone(),
             belt: Belt::of(scene, LEAST_SLIP),
+            moved: moved::moved(scene, settings.drives),
         };
         for body in &scene.bodies {
             running.add_body(foundation, body, scene.collisions, settings.segments)?;
         }
-        for connector in &scene.connectors {
-            running.add_connector(connector)?;
+        for (index, connector) in scene.connectors.iter().enumerate() {
+            if running.moved.iter().all(|moved| moved.pin != index) {
+                running.add_connector(connector, &scene.on_joint(index))?;
+            }
         }
         Ok(running)
     }
@@ -139,8 +155,13 @@ impl Running {
         collides: bool,
         segments: usize,
     ) -> Result<(), EngineError> {
-        let (start, scale) = (&body.start, self.scale);
+        let moved = self.moved.iter().find(|moved| moved.body == self.bodies.len()).copied();
+        let (mut start, scale) = (body.start, self.scale);
+        if let Some(moved) = moved {
+            (start.position, start.velocity) = (moved.pivot, DVec2::ZERO);
+        }
         let kind = match body.inertia {
+            Some(_) if moved.is_some() => BodyType::Kinematic,
             Some(_) => BodyType::Dynamic,
             None if body.spin != 0.0 => BodyType::Kinematic,
             None => BodyType::Static,
@@ -157,8 +178,9 @@ impl Running {
             .allow_fast_rotation(true)
             .build();
         let id = self.world.create_body(definition.map_err(refused)?).map_err(refused)?;
-        self.add_shape(id, body, collides, segments).map_err(EngineError::Build)?;
-        if let Some(inertia) = body.inertia {
+        let origin = moved.map_or(DVec2::ZERO, |moved| moved.point);
+        self.add_shape(id, body, origin, collides, segments).map_err(EngineError::Build)?;
+        if let Some(inertia) = body.inertia.filter(|_| moved.is_none()) {
             let moment = (inertia.moment * scale * scale) as f32;
             let data = MassData::new(inertia.mass as f32, Vec2::new(0.0, 0.0), moment).map_err(refused)?;
             self.world.body(id).and_then(|mut body| body.set_mass_data(data)).map_err(refused)?;
@@ -167,7 +189,15 @@ impl Running {
         Ok(())
     }
 
-    fn add_shape(&mut self, id: BodyId, body: &Body, collides: bool, segments: usize) -> Result<(), String> {
+    /// Gives a body its shape, with the origin at a point of the shape's coordinates [m].
+    fn add_shape(
+        &mut self,
+        id: BodyId,
+        body: &Body,
+        origin: DVec2,
+        collides: bool,
+        segments: usize,
+    ) -> Result<(), String> {
         let told = |error: boxdd::prelude::Error| error.to_string();
         let material = SurfaceMaterial::default();
         let material = material.with_friction(body.surface.friction as f32).map_err(told)?;
@@ -182,25 +212,33 @@ impl Running {
         let mut target = self.world.body(id).map_err(told)?;
         match &body.shape {
             Shape::Disc { radius } => {
-                target.create_centered_circle(&definition, (radius * scale) as f32).map_err(told)?;
+                let center = vector(-origin * scale);
+                let circle = shapes::circle(center, (radius * scale) as f32).map_err(told)?;
+                target.create_circle(&definition, &circle).map_err(told)?;
             }
             Shape::Block { width, height } => {
                 let half = |size: &f64| (0.5 * size * scale) as f32;
-                let polygon = shapes::box_polygon(half(width), half(height)).map_err(told)?;
-                target.create_polygon(&definition, &polygon).map_err(told)?;
+                if origin == DVec2::ZERO {
+                    let polygon = shapes::box_polygon(half(width), half(height)).map_err(told)?;
+                    target.create_polygon(&definition, &polygon).map_err(told)?;
+                } else {
+                    let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+                        .map(|(x, y)| vector((DVec2::new(x * width, y * height) - origin) * scale));
+                    target.create_polygon_from_points(&definition, corners, 0.0).map_err(told)?;
+                }
             }
             Shape::Polygon(corners) => {
-                let corners = corners.iter().map(|&corner| vector(corner * scale));
+                let corners = corners.iter().map(|&corner| vector((corner - origin) * scale));
                 target.create_polygon_from_points(&definition, corners, 0.0).map_err(told)?;
             }
             Shape::Rounded { corners, radius } => {
-                let corners = corners.iter().map(|&corner| vector(corner * scale));
+                let corners = corners.iter().map(|&corner| vector((corner - origin) * scale));
                 let radius = (radius * scale) as f32;
                 target.create_polygon_from_points(&definition, corners, radius).map_err(told)?;
             }
             Shape::Outline(paths) => {
                 for corners in corners(paths, segments)? {
-                    let points = corners.iter().map(|&corner| vector(corner * scale));
+                    let points = corners.iter().map(|&corner| vector((corner - origin) * scale));
                     let chain = ChainDef::builder().points(points).is_loop(true).filter(filter);
                     let chain = chain.single_material(&material).build().map_err(told)?;
                     target.create_chain(&chain).map_err(told)?;
@@ -210,23 +248,38 @@ impl Running {
         Ok(())
     }
 
-    fn add_connector(&mut self, connector: &Connector) -> Result<(), EngineError> {
+    fn add_connector(&mut self, connector: &Connector, on_joint: &OnJoint) -> Result<(), EngineError> {
         let scale = self.scale;
         match connector {
             Connector::Pin(a, b) => {
                 let base = self.world.joint_base(self.id(a), self.id(b)).map_err(refused)?;
-                let (a, b) = (vector(a.point * scale), vector(b.point * scale));
+                let (a, b) = (vector(self.anchor(a) * scale), vector(self.anchor(b) * scale));
                 let base = base.with_local_frame_components(a, 0.0, b, 0.0).map_err(refused)?;
-                let base = self.tuned(base.with_collide_connected(false));
-                self.world.create_revolute_joint(&RevoluteJointDef::new(base)).map_err(refused)?;
+                let mut joint = RevoluteJointDef::new(self.tuned(base.with_collide_connected(false)));
+                if let Some(motor) = on_joint.as_motor(DRIVE_FORCE) {
+                    let torque = (motor.most * scale * scale) as f32;
+                    joint = joint.enable_motor(true).motor_speed(motor.speed as f32).max_motor_torque(torque);
+                }
+                if let Some([lower, upper]) = on_joint.limits {
+                    joint = joint.enable_limit(true).lower_angle(lower as f32).upper_angle(upper as f32);
+                }
+                self.world.create_revolute_joint(&joint).map_err(refused)?;
             }
-            Connector::Guide { body, point, axis } => {
+            Connector::Guide { body, point, axis } | Connector::Slider { body, point, axis } => {
                 let base = self.world.joint_base(self.ground, self.bodies[*body]).map_err(refused)?;
                 let angle = axis.to_angle() as f32;
                 let (point, center) = (vector(*point * scale), Vec2::new(0.0, 0.0));
                 let base = base.with_local_frame_components(point, angle, center, angle);
                 let base = self.tuned(base.map_err(refused)?).with_collide_connected(true);
-                let joint = PrismaticJointDef::new(base);
+                let mut joint = PrismaticJointDef::new(base);
+                if let Some(motor) = on_joint.as_motor(DRIVE_FORCE) {
+                    let [speed, force] = [motor.speed, motor.most].map(|size| (size * scale) as f32);
+                    joint = joint.enable_motor(true).motor_speed(speed).max_motor_force(force);
+                }
+                if let Some(limits) = on_joint.limits {
+                    let [lower, upper] = limits.map(|limit| (limit * scale) as f32);
+                    joint = joint.enable_limit(true).lower_translation(lower).upper_translation(upper);
+                }
                 self.world.create_prismatic_joint(&joint).map_err(refused)?;
             }
             Connector::Rod(..) => return Err(unsupported("stiff rods")),
@@ -240,6 +293,12 @@ impl Running {
             Some(tuning) => base.with_constraint_tuning(tuning),
             None => base,
         }
+    }
+
+    /// The point of a connector's end in the coordinates of its body as it is here [m].
+    fn anchor(&self, end: &End) -> DVec2 {
+        let moved = self.moved.iter().find(|moved| Some(moved.body) == end.body);
+        end.point - moved.map_or(DVec2::ZERO, |moved| moved.point)
     }
 
     fn id(&self, end: &End) -> BodyId {
@@ -310,6 +369,9 @@ impl Session for Running {
         states.clear();
         for &id in &self.bodies {
             states.push(state(&mut self.world, id, self.scale).unwrap_or(LOST));
+        }
+        for moved in &self.moved {
+            states[moved.body] = moved::state(moved, states[moved.body].angle);
         }
     }
 

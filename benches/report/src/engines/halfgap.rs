@@ -1,12 +1,14 @@
 //! halfgap, with its one knob.
 
 use super::{Engine, EngineError, Session};
+use crate::on_joint::OnJoint;
 use crate::scene::{Body, Connector, End, Scene};
 use glam::DVec2;
 use halfgap::force::Spring;
 use halfgap::{
     AdvanceBy, Anchor, BodyId, BodyMotion, BodySpec, BodyState, ConnectorKind, ConnectorSpec, Inertia,
-    RailPath, SlotFrame, Surface, World, WorldBuilder, WorldSettings, geometry,
+    Limits, MotionLaw, Motor, RailPath, SlotFrame, Surface, Turn, World, WorldBuilder, WorldSettings,
+    geometry,
 };
 use std::sync::Arc;
 
@@ -69,9 +71,9 @@ pub fn build(scene: &Scene, tolerance: f64, strategy: AdvanceBy) -> Result<World
             builder.add_gravity(id, scene.gravity);
         }
     }
-    for connector in &scene.connectors {
+    for (index, connector) in scene.connectors.iter().enumerate() {
         let connector = halfgap::Connector::new(connector_kind(connector)?, 0.0).map_err(refused)?;
-        builder.add_connector(ConnectorSpec::new(connector));
+        builder.add_connector(acted_on(ConnectorSpec::new(connector), &scene.on_joint(index)));
     }
     for (index, spring) in scene.springs.iter().enumerate() {
         let ends = [anchor(&spring.a), anchor(&spring.b)];
@@ -115,11 +117,35 @@ fn connector_kind(connector: &Connector) -> Result<ConnectorKind, EngineError> {
             normal: axis.perp(),
             frame: SlotFrame::World,
         },
+        Connector::Slider { body, point, axis } => ConnectorKind::Slider {
+            a: anchor(&End::world(*point)),
+            b: anchor(&End::body(*body, DVec2::ZERO)),
+            axis: *axis,
+            frame: SlotFrame::World,
+            turn: Turn::default(),
+        },
         Connector::Rail { body, points } => ConnectorKind::Rail {
             a: anchor(&End::body(*body, DVec2::ZERO)),
             path: Arc::new(RailPath::through(points, false).map_err(refused)?),
         },
     })
+}
+
+fn acted_on(mut spec: ConnectorSpec, on_joint: &OnJoint) -> ConnectorSpec {
+    let OnJoint { motor, limits, friction, rate } = *on_joint;
+    if let Some(motor) = motor {
+        spec = spec.motor(Motor { speed: motor.speed, max: motor.most });
+    }
+    if let Some([lower, upper]) = limits {
+        spec = spec.limits(Limits { lower: Some(lower), upper: Some(upper), elasticity: 0.0 });
+    }
+    if friction > 0.0 {
+        spec = spec.friction(friction);
+    }
+    if let Some(rate) = rate {
+        spec = spec.drive(MotionLaw::Uniform(rate));
+    }
+    spec
 }
 
 struct Running {

@@ -3,6 +3,7 @@
 mod belt;
 pub mod box2d;
 pub mod halfgap;
+pub mod moved;
 pub mod rapier;
 mod segments;
 
@@ -79,23 +80,34 @@ pub trait Session {
 mod tests {
     use super::box2d::{Box2d, Contacts};
     use super::halfgap::Halfgap;
+    use super::moved::Drives;
     use super::rapier::{Joints, Rapier, Tuning};
     use super::*;
     use crate::measure::{Repeats, measure};
+    use crate::scene::Group;
     use crate::scenes;
 
     /// The peers at a step of about a millisecond, set for accuracy.
-    fn peers(scene: &Scene) -> [Box<dyn Engine>; 2] {
+    fn peers(scene: &Scene, drives: Drives) -> [Box<dyn Engine>; 2] {
         let (steps_per_check, segments) = ((1000.0 * scene.check_grid) as u32, 512);
         let tuning = Tuning::Accurate;
         [
-            Box::new(Rapier { steps_per_check, iterations: 4, segments, tuning, joints: Joints::Impulse }),
+            Box::new(Rapier {
+                steps_per_check,
+                iterations: 4,
+                segments,
+                tuning,
+                joints: Joints::Impulse,
+                drives,
+            }),
             Box::new(Box2d {
                 steps_per_check,
                 substeps: 4,
                 segments,
                 scale: 100.0,
                 contacts: Contacts::Stiff,
+                soft_joints: scene.group() == Group::MotorsAndLimits,
+                drives,
             }),
         ]
     }
@@ -118,9 +130,24 @@ mod tests {
         for scene in scenes::wanted(|name| names.contains(&name)) {
             let ours = error(&Halfgap { tolerance: 1e-6, step: None }, &scene);
             assert!(ours < 1e-7, "{}: {ours}", scene.name);
-            for peer in peers(&scene) {
+            for peer in peers(&scene, Drives::Motor) {
                 let theirs = error(&*peer, &scene);
                 assert!(theirs < 5e-3, "{}: {} {theirs}", scene.name, peer.name());
+            }
+        }
+    }
+
+    #[test]
+    fn every_engine_is_given_the_motors_the_limits_and_the_drives_of_a_scene() {
+        let scenes = scenes::wanted(|_| true).into_iter();
+        for scene in scenes.filter(|scene| scene.group() == Group::MotorsAndLimits) {
+            let ours = error(&Halfgap { tolerance: 1e-6, step: None }, &scene);
+            assert!(ours < 1e-6, "{}: {ours}", scene.name);
+            for drives in [Drives::Motor, Drives::Moved] {
+                for peer in peers(&scene, drives) {
+                    let theirs = error(&*peer, &scene);
+                    assert!(theirs < 5e-2, "{}: {} {drives:?} {theirs}", scene.name, peer.name());
+                }
             }
         }
     }
@@ -132,7 +159,7 @@ mod tests {
         let (friction, speed) = (floor.surface.friction, disc.start.velocity.x);
         // Between the first impact, at the speed of a fall of 1 m, and the second.
         let closing = (2.0 * scenes[0].gravity.length()).sqrt();
-        for peer in peers(&scenes[0]) {
+        for peer in peers(&scenes[0], Drives::Motor) {
             let mut session = peer.start(&scenes[0]).expect("it has all that the scene needs");
             session.advance(1.0).expect("it runs");
             let mut states = Vec::new();

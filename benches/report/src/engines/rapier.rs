@@ -1,8 +1,10 @@
 //! Rapier in double precision, at fixed steps.
 
 use super::belt::{Belt, top_velocity};
+use super::moved::{self, Drives, Moved};
 use super::segments::corners;
 use super::{Engine, EngineError, Session};
+use crate::on_joint::OnJoint;
 use crate::scene::{Body, Connector, End, Scene, Shape, Spring};
 use glam::DVec2;
 use halfgap::BodyState;
@@ -13,6 +15,11 @@ const STOCK_STEP: f64 = 1.0 / 60.0;
 /// Slip [m/s] on a belt that counts as none; from a tenth of it on, runs at some steps take loads at rest for loads that
 /// slip.
 const LEAST_SLIP: f64 = 1e-8;
+
+/// Damping of motors per mass [1/s]: so much that one reaches its speed within a step, if it is strong enough.
+const MOTOR_DAMPING: f64 = 1e9;
+/// What a drive may pull [N, N m].
+const DRIVE_FORCE: f64 = 1e9;
 
 /// Changes to the settings of `Rapier` besides step and iterations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +53,8 @@ pub struct Rapier {
     pub tuning: Tuning,
     /// Form in which bodies are tied.
     pub joints: Joints,
+    /// Form of drives.
+    pub drives: Drives,
 }
 
 impl Engine for Rapier {
@@ -58,7 +67,7 @@ impl Engine for Rapier {
     }
 
     fn settings(&self) -> String {
-        let Self { iterations, steps_per_check, segments, tuning, joints } = self;
+        let Self { iterations, steps_per_check, segments, tuning, joints, drives } = self;
         let tuning = match tuning {
             Tuning::Stock => "stock",
             Tuning::Accurate => "accurate",
@@ -67,8 +76,9 @@ impl Engine for Rapier {
             Joints::Impulse => "",
             Joints::Multibody => " multibody",
         };
+        let drives = if *drives == Drives::Moved { " moved" } else { "" };
         let segments = if *segments > 0 { format!(" segments {segments}") } else { String::new() };
-        format!("{tuning}{joints} steps {steps_per_check} iterations {iterations}{segments}")
+        format!("{tuning}{joints}{drives} steps {steps_per_check} iterations {iterations}{segments}")
     }
 
     fn start(&self, scene: &Scene) -> Result<Box<dyn Session>, EngineError> {
@@ -94,6 +104,7 @@ struct Running {
     steps: u64,
     springs: Vec<Spring>,
     belt: Option<Belt>,
+    moved: Vec<Moved>,
 }
 
 impl Running {
@@ -119,23 +130,31 @@ impl Running {
             steps: 0,
             springs: scene.springs.clone(),
             belt: Belt::of(scene, LEAST_SLIP),
+            moved: moved::moved(scene, settings.drives),
         };
         for body in &scene.bodies {
             running.add_body(body, scene.collisions, settings.segments)?;
         }
-        for connector in &scene.connectors {
-            running.add_connector(connector, settings.joints)?;
+        for (index, connector) in scene.connectors.iter().enumerate() {
+            if running.moved.iter().all(|moved| moved.pin != index) {
+                running.add_connector(connector, &scene.on_joint(index), settings.joints)?;
+            }
         }
         Ok(running)
     }
 
     fn add_body(&mut self, body: &Body, collides: bool, segments: usize) -> Result<(), EngineError> {
-        let start = &body.start;
+        let moved = self.moved.iter().find(|moved| moved.body == self.handles.len()).copied();
+        let mut start = body.start;
+        if let Some(moved) = moved {
+            (start.position, start.velocity) = (moved.pivot, DVec2::ZERO);
+        }
         // Its surfaces do not run: a belt is a floor that moves along, as long as it is straight and long.
         let along = top_velocity(&body.surface, start.angle);
         let builder = match body.inertia {
             None if body.spin != 0.0 || along != DVec2::ZERO => RigidBodyBuilder::kinematic_velocity_based(),
             None => RigidBodyBuilder::fixed(),
+            Some(_) if moved.is_some() => RigidBodyBuilder::kinematic_position_based(),
             Some(inertia) => RigidBodyBuilder::dynamic().additional_mass_properties(MassProperties::new(
                 Vector::ZERO,
                 inertia.mass,
@@ -154,6 +173,7 @@ impl Running {
         for shape in colliders(&body.shape, segments)? {
             let mut collider = shape
                 .density(0.0)
+                .translation(vector(moved.map_or(DVec2::ZERO, |moved| -moved.point)))
                 .friction(body.surface.friction)
                 .restitution(body.elasticity)
                 .restitution_combine_rule(CoefficientCombineRule::Min);
@@ -170,23 +190,31 @@ impl Running {
         Ok(())
     }
 
-    fn add_connector(&mut self, connector: &Connector, joints: Joints) -> Result<(), EngineError> {
+    fn add_connector(
+        &mut self,
+        connector: &Connector,
+        on_joint: &OnJoint,
+        joints: Joints,
+    ) -> Result<(), EngineError> {
         let (from, to, joint): (_, _, GenericJoint) = match connector {
             Connector::Pin(a, b) => {
                 let joint = RevoluteJointBuilder::new()
                     .contacts_enabled(false)
-                    .local_anchor1(vector(a.point))
-                    .local_anchor2(vector(b.point));
+                    .local_anchor1(vector(self.anchor(a)))
+                    .local_anchor2(vector(self.anchor(b)));
                 let (from, to) = (self.handle(a), self.handle(b));
                 let mut joint: GenericJoint = joint.into();
                 // In reduced coordinates a joint starts where its frames coincide.
                 let turn = self.bodies[from].rotation().inverse() * *self.bodies[to].rotation();
                 joint.local_frame1.rotation = turn;
+                act(&mut joint, JointAxis::AngX, on_joint, turn.angle());
                 (from, to, joint)
             }
-            Connector::Guide { body, point, axis } => {
+            Connector::Guide { body, point, axis } | Connector::Slider { body, point, axis } => {
                 let joint = PrismaticJointBuilder::new(vector(*axis)).local_anchor1(vector(*point));
-                (self.ground, self.handles[*body], joint.into())
+                let mut joint: GenericJoint = joint.into();
+                act(&mut joint, JointAxis::LinX, on_joint, 0.0);
+                (self.ground, self.handles[*body], joint)
             }
             Connector::Rod(..) => return Err(unsupported("rods")),
             Connector::Rail { .. } => return Err(unsupported("rails")),
@@ -208,6 +236,12 @@ impl Running {
         }
     }
 
+    /// The point of a connector's end in the coordinates of its body as it is here.
+    fn anchor(&self, end: &End) -> DVec2 {
+        let moved = self.moved.iter().find(|moved| Some(moved.body) == end.body);
+        end.point - moved.map_or(DVec2::ZERO, |moved| moved.point)
+    }
+
     fn handle(&self, end: &End) -> RigidBodyHandle {
         end.body.map_or(self.ground, |body| self.handles[body])
     }
@@ -215,6 +249,7 @@ impl Running {
     fn step(&mut self) {
         self.pull_springs();
         self.tell_friction();
+        self.turn_moved();
         self.pipeline.step(
             self.gravity,
             &self.parameters,
@@ -256,6 +291,15 @@ impl Running {
         }
     }
 
+    /// Tells bodies that are moved where they are at the end of the step. One that is told its rate does not turn.
+    fn turn_moved(&mut self) {
+        let time = (self.steps + 1) as f64 * self.parameters.dt;
+        for moved in &self.moved {
+            let angle = moved.start + moved.rate * time;
+            self.bodies[self.handles[moved.body]].set_next_kinematic_rotation(Rotation::new(angle));
+        }
+    }
+
     /// Sets the coefficient of friction on a belt and its load.
     fn tell_friction(&mut self) {
         let Some(belt) = &mut self.belt else { return };
@@ -289,6 +333,9 @@ impl Session for Running {
                 angular_velocity: body.angvel(),
             }
         }));
+        for moved in &self.moved {
+            states[moved.body] = moved::state(moved, states[moved.body].angle);
+        }
     }
 
     fn steps(&self) -> u64 {
@@ -302,6 +349,16 @@ impl Session for Running {
     fn penetration(&mut self) -> f64 {
         let points = self.narrow_phase.contact_pairs().flat_map(|pair| pair.manifolds());
         points.flat_map(|manifold| &manifold.points).map(|point| -point.dist).fold(0.0, f64::max)
+    }
+}
+
+/// Sets what acts on a joint whose coordinate is `start` where its frames coincide.
+fn act(joint: &mut GenericJoint, axis: JointAxis, on_joint: &OnJoint, start: f64) {
+    if let Some(motor) = on_joint.as_motor(DRIVE_FORCE) {
+        joint.set_motor_velocity(axis, motor.speed, MOTOR_DAMPING).set_motor_max_force(axis, motor.most);
+    }
+    if let Some(limits) = on_joint.limits {
+        joint.set_limits(axis, limits.map(|limit| limit - start));
     }
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn solve(rates: Rates, start: &[f64], times: &[f64], step: f64) -> Ve
 }
 
 /// One step: the last entry of the table of Aitken and Neville.
-fn extrapolated(rates: Rates, state: &[f64], step: f64) -> Vec<f64> {
+pub(super) fn extrapolated(rates: Rates, state: &[f64], step: f64) -> Vec<f64> {
     let substeps = |row: usize| 2 * (row + 1);
     let mut table: Vec<Vec<f64>> = Vec::with_capacity(COLUMNS);
     for row in 0..COLUMNS {

@@ -13,6 +13,8 @@
 //! there the wheel would have to be pulled on; both bodies then turn evenly until the wall behind catches the
 //! pin, in an impact without elasticity. That costs the same part of the energy at every index, after which
 //! the crank goes through the dwell at an even, lower rate.
+//!
+//! A crank that is driven at an even rate has an infinite moment of inertia: all of the above holds with a ratio of 0.
 
 use super::one_freedom::OneFreedom;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

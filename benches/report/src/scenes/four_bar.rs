@@ -1,7 +1,9 @@
 //! A four-bar linkage whose crank turns all round under gravity.
 //!
-//! One degree of freedom: energy gives the crank's rate from its angle, quadrature the time.
+//! One degree of freedom: energy gives the crank's rate from its angle, quadrature the time. With a driven crank the
+//! angle is known at once.
 
+use crate::on_joint::OnJoint;
 use crate::reference::one_freedom::OneFreedom;
 use crate::scene::{Body, Check, Connector, End, Scene};
 use glam::DVec2;
@@ -17,6 +19,8 @@ const MASSES: [f64; 3] = [2.0, 1.0, 1.0];
 const RATE: f64 = 8.0;
 /// Angle of the crank at the start [rad].
 const START: f64 = 0.5;
+/// Times of the checks [s].
+const TIMES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
 /// Poses of the three bars and their rates per rate of the crank.
 struct Configuration {
@@ -84,14 +88,32 @@ pub(super) fn scene() -> Scene {
     };
     let motion = OneFreedom { rate: &rate, start: START, kinks: Vec::new(), piece: 0.05 };
     let mut error = 1e-14_f64;
-    let check = |time: f64| {
+    let known = |time: f64| {
         let (crank, doubt) = motion.at(time);
         error = error.max(doubt);
-        let bars = configuration(crank).bars;
-        let states = bars.iter().enumerate().map(|(bar, pose)| (bar, state(pose, rate(crank))));
-        Check { time, states: states.collect() }
+        check(time, crank, rate(crank))
     };
-    let checks = [0.5, 1.0, 2.0, 4.0].map(check).to_vec();
+    let checks = TIMES.map(known).to_vec();
+    linkage("four_bar", "a four-bar linkage, its crank turning all round", checks)
+        .with_reference("energy and quadrature in the crank's angle", error)
+}
+
+/// The same with a crank that is driven at its rate.
+pub(super) fn driven() -> Scene {
+    let checks = TIMES.map(|time| check(time, START + RATE * time, RATE)).to_vec();
+    let mut scene =
+        linkage("driven_four_bar", "a four-bar linkage, its crank driven at an even rate", checks);
+    scene.on_joints = vec![(0, OnJoint::rate(RATE))];
+    scene.with_reference("closed form in the crank's angle", 1e-14)
+}
+
+fn check(time: f64, crank: f64, rate: f64) -> Check {
+    let bars = configuration(crank).bars;
+    let states = bars.iter().enumerate().map(|(bar, pose)| (bar, state(pose, rate)));
+    Check { time, states: states.collect() }
+}
+
+fn linkage(name: &str, about: &str, checks: Vec<Check>) -> Scene {
     let start = configuration(START).bars;
     let names = ["crank", "coupler", "rocker"];
     let body = |bar: usize| {
@@ -99,11 +121,7 @@ pub(super) fn scene() -> Scene {
         Body::block(names[bar], size, MASSES[bar], state(&start[bar], RATE)).with_elasticity(0.0)
     };
     let end = |bar: usize, side: f64| End::body(bar, DVec2::new(side * 0.5 * LENGTHS[bar], 0.0));
-    let mut scene = Scene::new(
-        "four_bar",
-        "a four-bar linkage, its crank turning all round",
-        vec![body(0), body(1), body(2)],
-    );
+    let mut scene = Scene::new(name, about, vec![body(0), body(1), body(2)]);
     scene.connectors = vec![
         Connector::Pin(End::world(DVec2::ZERO), end(0, -1.0)),
         Connector::Pin(end(0, 1.0), end(1, -1.0)),
@@ -112,5 +130,5 @@ pub(super) fn scene() -> Scene {
     ];
     scene.gravity = DVec2::new(0.0, -GRAVITY);
     scene.collisions = false;
-    scene.with_checks(0.5, checks).with_reference("energy and quadrature in the crank's angle", error)
+    scene.with_checks(0.5, checks)
 }

@@ -9,17 +9,22 @@ mod four_bar;
 mod friction;
 mod geneva;
 mod impacts;
+mod joint_friction;
+mod limits;
+mod motors;
 pub mod piles;
 mod rail;
+mod rod;
+mod slider_crank;
 
 use crate::scene::Scene;
 
 /// How a scene is made: its name is known before, as its answer may take a while.
 type Maker = (&'static str, fn() -> Scene);
 
-/// All scenes, in the order of the report: impacts, mechanisms, contacts, friction, and piles of which only the time is
-/// measured.
-const MAKERS: [Maker; 29] = [
+/// All scenes, in the order of the report: impacts, mechanisms, contacts, friction, motors and limits, and piles of which
+/// only the time is measured.
+const MAKERS: [Maker; 38] = [
     ("ball_bounce", || exact::read("ball_bounce", 0.05)),
     ("bounce_to_rest", impacts::to_rest),
     ("two_discs_e1", || exact::read("two_discs_e1", 0.5)),
@@ -47,6 +52,15 @@ const MAKERS: [Maker; 29] = [
     ("ladder_rests", || friction::without_bounce("ladder_rests", 1.0)),
     ("stack_10", || friction::at_rest("stack_10", 1.0)),
     ("pyramid_20", || friction::at_rest("pyramid_20", 1.0)),
+    ("motor_spins_up", motors::spins_up),
+    ("motor_turns_arm", motors::turns_arm),
+    ("lift_to_stop", motors::lift_to_stop),
+    ("pendulum_on_limits", limits::pendulum),
+    ("knee_on_limit", limits::knee),
+    ("joint_friction_stops", joint_friction::scene),
+    ("driven_four_bar", four_bar::driven),
+    ("driven_slider_crank", slider_crank::driven),
+    ("driven_geneva", geneva::driven),
     ("settling_discs", piles::discs),
     ("stack_of_boxes", piles::stack),
 ];
