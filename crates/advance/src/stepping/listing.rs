@@ -234,8 +234,9 @@ fn add_contact(
     let bend = if span * turn <= STRAIGHT { 0.5 * span } else { 0.0 };
     let mut row = Row {
         places: ids.map(|body| body.0),
-        third: None,
+        apart: None,
         is_bilateral: false,
+        prescribed: None,
         presses: contact.presses,
         touches: contact.presses || gap <= slack,
         roll: None,

@@ -55,7 +55,7 @@ impl Shifts {
             let [a, b] = row.ends();
             if row.all_ends().map(|place| changes[place]).sum::<f64>() > 0.0 {
                 let [p, q] = [a, b].map(|place| &movers[place].velocity);
-                row.gap += row.rate_of(movers);
+                row.gap += row.change_of(movers);
                 row.slip.off += row.slip.line.rate(p, q);
             }
         }
@@ -101,7 +101,7 @@ fn lift(bodies: &Bodies, place: usize, [x, y, _]: Motion3) -> f64 {
 
 /// Gives a row the displacement by which its gap is none, or none if it is open; returns the change of the gap [m].
 fn visit(row: &mut Row, shifts: &mut [Mover], changes: &mut [f64]) -> f64 {
-    let lacking = row.rate_of(shifts) + row.gap;
+    let lacking = row.change_of(shifts) + row.gap;
     let before = row.normal.before;
     let wanted = before - lacking * row.normal.weight;
     let impulse = if row.is_bilateral { wanted } else { wanted.max(0.0) } - before;

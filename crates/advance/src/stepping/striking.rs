@@ -39,6 +39,8 @@ impl Stepper {
                 self.means[body as usize] = mean;
             }
             self.book_laws(members, 0.5 * last, false, books);
+            // Rows begin with the forces of the last step.
+            self.book_driven(bodies, (island, 0.5 * last / span), (0.5 * last, false), books);
         }
         let (members, list) = self.islands.get(island);
         let before = energy(bodies, members, &self.node);
@@ -101,14 +103,17 @@ impl Stepper {
         let (members, list) = self.islands.get(island);
         let Self { rows, touching, kept, smooth, node, sweeps, .. } = self;
         touching.clear();
-        touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
+        touching.extend(list.iter().filter(|&&row| {
+            let row = &rows.all[row as usize];
+            row.touches && !row.pulls()
+        }));
         kept.clear();
         for &row in touching.iter() {
             let row = &mut rows.all[row as usize];
             let rate = row.striking_rate(node);
             let rebounds = if rate < -slow { row.elasticity * rate } else { 0.0 };
             kept.push([row.normal, row.slip.line]);
-            (row.normal.offset, row.normal.impulse) = (rebounds, 0.0);
+            (row.normal.offset, row.normal.impulse) = (rebounds + row.prescribed.unwrap_or(0.0), 0.0);
             (row.slip.line.offset, row.slip.line.impulse) = (-row.slip.running, 0.0);
         }
         let before = energy(bodies, members, node);
@@ -117,7 +122,10 @@ impl Stepper {
                 smooth[body as usize].velocity = node[body as usize];
             }
             if !is_elastic {
-                touching.iter().for_each(|&row| rows.all[row as usize].normal.offset = 0.0);
+                for &row in touching.iter() {
+                    let row = &mut rows.all[row as usize];
+                    row.normal.offset = row.prescribed.unwrap_or(0.0);
+                }
             }
             let (list, rolls) = (touching.as_slice(), &mut rows.rolls);
             let mut problem =
@@ -151,11 +159,11 @@ impl Stepper {
         let mut fastest = 0.0_f64;
         for &row in list {
             let row = &self.rows.all[row as usize];
-            slow = slow.max(SLOW_STEPS * span * row.rate(&self.kicks.accelerations).abs());
+            slow = slow.max(SLOW_STEPS * span * row.change(&self.kicks.accelerations).abs());
             let closing = match (row.strikes, from) {
                 (Some(speed), _) => speed,
                 (None, From::Start(_)) if row.is_bilateral => row.rate(&self.node).abs(),
-                (None, From::Start(_)) if row.touches => -row.rate(&self.node),
+                (None, From::Start(_)) if row.touches && !row.pulls() => -row.rate(&self.node),
                 _ => 0.0,
             };
             fastest = fastest.max(closing);
