@@ -5,8 +5,16 @@
 
 use crate::rigid::{Counts, Ledger};
 use crate::stepping::bodies::{Bodies, Motion3, Nature};
-use crate::stepping::driving::Driven;
 use crate::stepping::rows::{Rows, Source};
+
+/// Work [J] of some rows on bodies that can move.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Driven {
+    /// By drives, motors and bodies that are moved.
+    pub(super) drives: f64,
+    /// By dry friction in joints: the heat, negative.
+    pub(super) rubbing: f64,
+}
 
 /// Sums up to the middle of the present step, and powers [W] within it.
 #[derive(Debug, Default)]

@@ -3,18 +3,9 @@
 //! *Invariant*: what is booked here is taken from what rows did in all, so that the sum of the accounts does not change.
 
 use crate::stepping::bodies::{Bodies, Motion3};
-use crate::stepping::books::StepBooks;
-use crate::stepping::rows::{Roll, Row};
+use crate::stepping::books::{Driven, StepBooks};
+use crate::stepping::rows::Row;
 use crate::stepping::step::Stepper;
-
-/// Work [J] of the rows of an island on bodies that can move.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Driven {
-    /// By drives, motors and bodies that are moved.
-    pub(super) drives: f64,
-    /// By dry friction in joints: the heat, negative.
-    pub(super) rubbing: f64,
-}
 
 impl Stepper {
     /// True if something drives, or rubs in a joint, in the present step.
@@ -38,9 +29,15 @@ impl Stepper {
         let (_, list) = self.islands.get(island);
         for &row in list {
             let row = &self.rows.all[row as usize];
-            let roll = row.roll.map(|roll| &self.rows.rolls[roll as usize]);
-            if row.touches {
-                row.drive(roll, (bodies, &self.means), share, &mut driven);
+            if !row.touches {
+                continue;
+            }
+            let impulses = [row.normal.impulse, row.slip.line.impulse].map(|impulse| share * impulse);
+            row.drive(impulses, (bodies, &self.means), &mut driven);
+            if let Some(roll) = row.roll {
+                let line = &self.rows.rolls[roll as usize].line;
+                driven.drives -=
+                    share * line.impulse * row.rate_of_fixed(line.jacobian(), bodies, &self.means);
             }
         }
         books.book_driven(driven, span, is_present);
@@ -48,39 +45,50 @@ impl Stepper {
 }
 
 impl Row {
-    /// Adds what the row and its resistance against rolling do with a share of their impulses at given velocities.
-    fn drive(
+    /// Adds what the row does with impulses along its normal and along the surface, at given velocities.
+    pub(super) fn drive(
         &self,
-        roll: Option<&Roll>,
+        [normal, slip]: [f64; 2],
         (bodies, velocities): (&Bodies, &[Motion3]),
-        share: f64,
         driven: &mut Driven,
     ) {
-        let impulse = share * self.normal.impulse;
         if self.prescribed.is_some() {
-            driven.drives += impulse * self.change(velocities);
+            driven.drives += normal * self.change(velocities);
         } else if self.pulls() {
-            driven.rubbing += impulse * self.change(velocities);
+            driven.rubbing += normal * self.change(velocities);
         }
-        let is_moved = |place: usize| place < bodies.count() && bodies.natures[place].body.is_fixed();
-        let ends = self.ends();
-        if !self.all_ends().any(is_moved) {
-            return;
-        }
-        let on_moved = |jacobian: [f64; 6]| {
-            let sides = ends.into_iter().zip(jacobian.as_chunks::<3>().0);
-            let rates = sides.filter(|&(place, _)| is_moved(place)).map(|(place, [x, y, turn])| {
-                let [u, v, spin] = velocities[place];
-                x * u + y * v + turn * spin
-            });
-            rates.sum::<f64>()
-        };
         let third = self.third().map(|third| (third.place as usize, third.arm));
-        let of_third = third.filter(|&(place, _)| is_moved(place));
+        let of_third = third.filter(|&(place, _)| is_moved(bodies, place));
         let of_third = of_third.map_or(0.0, |(place, arm)| arm * velocities[place][2]);
-        driven.drives -= impulse * (on_moved(self.jacobian()) + of_third);
-        for line in [Some(&self.slip.line), roll.map(|roll| &roll.line)].into_iter().flatten() {
-            driven.drives -= share * line.impulse * on_moved(line.jacobian());
+        driven.drives -= normal * (self.rate_of_fixed(self.jacobian(), bodies, velocities) + of_third);
+        driven.drives -= slip * self.rate_of_fixed(self.slip.line.jacobian(), bodies, velocities);
+    }
+
+    /// The same of an impact that leads from velocities to others.
+    pub(super) fn drive_blow(
+        &self,
+        blows: [f64; 2],
+        bodies: &Bodies,
+        velocities: [&[Motion3]; 2],
+        driven: &mut Driven,
+    ) {
+        for velocities in velocities {
+            self.drive(blows.map(|blow| 0.5 * blow), (bodies, velocities), driven);
         }
     }
+
+    /// The part of J v [m/s] of its first two bodies that is due to fixed ones, which are moved.
+    fn rate_of_fixed(&self, jacobian: [f64; 6], bodies: &Bodies, velocities: &[Motion3]) -> f64 {
+        let sides = self.ends().into_iter().zip(jacobian.as_chunks::<3>().0);
+        let rates = sides.filter(|&(place, _)| is_moved(bodies, place)).map(|(place, [x, y, turn])| {
+            let [u, v, spin] = velocities[place];
+            x * u + y * v + turn * spin
+        });
+        rates.sum()
+    }
+}
+
+/// True for a body that no force moves; it may be moved.
+fn is_moved(bodies: &Bodies, place: usize) -> bool {
+    place < bodies.count() && bodies.natures[place].body.is_fixed()
 }

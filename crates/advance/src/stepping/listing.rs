@@ -282,10 +282,7 @@ fn add_contact(
         line.impulse = span * contact.forces[2];
         rows.rolls.push(Roll { row: rows.all.len() as u32, line, bound: surface.rolling * radius });
     }
-    // It has come to touch without having been slowed down before.
-    if row.strikes.is_none() && row.touches && !row.presses && row.rebounds() && kinematics.rate < 0.0 {
-        row.strikes = Some(-kinematics.rate);
-    }
+    row.meet(kinematics.rate);
     rows.push(row);
 }
 

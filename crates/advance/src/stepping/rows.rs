@@ -242,6 +242,14 @@ impl Row {
         self.elasticity > 0.0 || self.slip.elasticity > 0.0
     }
 
+    /// Lets the row strike if it has come to touch, at a rate [m/s], without having been slowed down before.
+    pub(super) fn meet(&mut self, rate: f64) {
+        let has_come = !self.is_bilateral && self.touches && !self.presses && rate < 0.0;
+        if self.strikes.is_none() && has_come && self.rebounds() {
+            self.strikes = Some(-rate);
+        }
+    }
+
     /// J v [m/s] along the normal, with what is prescribed.
     #[inline]
     pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
@@ -287,9 +295,8 @@ impl Row {
 pub(super) struct Rows {
     pub(super) all: Vec<Row>,
     pub(super) rolls: Vec<Roll>,
-    /// Deepest overlap, and largest error of a connector [m].
+    /// Deepest overlap [m].
     pub(super) deepest: f64,
-    pub(super) farthest_off: f64,
     /// Some contact has struck, some rebounds.
     pub(super) strikes: bool,
     pub(super) rebounds: bool,
@@ -302,14 +309,12 @@ impl Rows {
     pub(super) fn clear(&mut self) {
         self.all.clear();
         self.rolls.clear();
-        (self.deepest, self.farthest_off) = (0.0, 0.0);
+        self.deepest = 0.0;
         (self.strikes, self.rebounds, self.ties, self.drives) = (false, false, false, false);
     }
 
     pub(super) fn push(&mut self, row: Row) {
-        if row.is_bilateral {
-            self.farthest_off = self.farthest_off.max(row.gap.abs());
-        } else {
+        if !row.is_bilateral {
             self.deepest = self.deepest.max(-row.gap);
         }
         self.strikes |= row.strikes.is_some();

@@ -155,7 +155,7 @@ impl Stepper {
         self.changes.end.append(&mut self.listing.ended);
         // What the steps leave open anyway is not worth a shift.
         let slack = settings.slack.max(settings.residual * span * span * fastest);
-        let shifts = self.rows.deepest > slack || self.rows.farthest_off > slack;
+        let shifts = self.rows.deepest > slack;
         if shifts {
             self.shifts.find(bodies, &mut self.rows.all, slack);
         }
@@ -206,9 +206,8 @@ impl Stepper {
         self.free.push([0.0; 3]);
         self.movers.clear();
         self.movers.extend(self.free.iter().enumerate().map(|(place, &free)| bodies.mover(place, free)));
-        if self.smooth.len() != self.movers.len() {
-            self.smooth.clone_from(&self.movers);
-        }
+        // Those of fixed bodies stay; islands write over the others.
+        self.smooth.clone_from(&self.movers);
         self.means.clone_from(&self.node);
     }
 

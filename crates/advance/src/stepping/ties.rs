@@ -104,7 +104,7 @@ impl Ties {
             normal = normal.with_compliance(apart.compliance(&normal, inertia, inverse_moment));
         }
         normal.impulse = span * tie.forces[direction];
-        Row {
+        let mut row = Row {
             places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
             apart,
             is_bilateral,
@@ -123,7 +123,9 @@ impl Ties {
             arrives: None,
             point: sample.point_a,
             source: Source::Connector { connector: index as u32, direction: direction as u32 },
-        }
+        };
+        row.meet(sample.kinematics.rate);
+        row
     }
 }
 
