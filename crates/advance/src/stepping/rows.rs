@@ -244,7 +244,8 @@ impl Row {
 
     /// Lets the row strike if it has come to touch, at a rate [m/s], without having been slowed down before.
     pub(super) fn meet(&mut self, rate: f64) {
-        let has_come = !self.is_bilateral && self.touches && !self.presses && rate < 0.0;
+        let is_met = !self.is_bilateral && !self.pulls();
+        let has_come = is_met && self.touches && !self.presses && rate < 0.0;
         if self.strikes.is_none() && has_come && self.rebounds() {
             self.strikes = Some(-rate);
         }
