@@ -2,9 +2,10 @@
 #![allow(unsafe_code, reason = "an allocator that counts is the only way to see allocations")]
 
 use halfgap::geometry::{DVec2, Shape};
+use halfgap::scene::{RunData, Scene, StrategyData};
 use halfgap::{Anchor, BodyId, ConnectorKind, World};
 use halfgap_tests::mechanism::{Workshop, at_rest, block, disc};
-use halfgap_tests::world_of;
+use halfgap_tests::{data, world_of};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::fmt::Write;
@@ -187,6 +188,31 @@ fn steps_of_one_length_and_chosen_ones_allocate_nothing() {
         println!("{run}: {allocations} allocations over {events} events");
         assert!(events > 100, "{run}: {events} changes");
         assert_eq!(allocations, 0, "{run}: over {events} events");
+    }
+}
+
+#[test]
+fn mechanisms_by_steps_allocate_nothing() {
+    for name in [
+        "slider_crank_driven",
+        "double_pendulum_motor",
+        "pendulum_dry_friction",
+        "rack_and_pinion_spring",
+        "planetary_gear_torque",
+    ] {
+        // Exactly, and by sweeps.
+        for tolerance in [1e-6, 1e-2] {
+            let scene = Scene::read(data(&format!("mechanisms/{name}.json"))).expect("it can be read");
+            let run = RunData {
+                strategy: StrategyData::Steps,
+                time_step: Some(0.01),
+                tolerance: Some(tolerance),
+                ..scene.run.clone()
+            };
+            let mut world = World::from_scene(&Scene { run, ..scene }).expect("a fine scene");
+            let (allocations, _) = allocations(&mut world, 5.0, 10.0);
+            assert_eq!(allocations, 0, "{name} at {tolerance}");
+        }
     }
 }
 

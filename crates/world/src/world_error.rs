@@ -165,14 +165,6 @@ pub enum WorldError {
         /// The connectors.
         connectors: Box<[ConnectorName; 2]>,
     },
-    /// Something that only an advance by events simulates so far.
-    #[error("{connector}: an advance by steps does not know {what} yet; use the strategy of events")]
-    NeedsEvents {
-        /// The connector.
-        connector: ConnectorName,
-        /// What it has.
-        what: &'static str,
-    },
     /// Velocities at the start cannot be made to fit the connectors.
     #[error(
         "{connector} comes apart at {} m/s at the start, and no velocities fit all connectors{}",

@@ -206,8 +206,6 @@ fn connectors_that_contradict_each_other_are_refused_with_both_names() {
         HEAD.to_owned() + &arm(", motor = { speed = 2.0 }"),
         HEAD.to_owned() + &arm(", motor = { speed = 2.0, max = inf }"),
         HEAD.to_owned() + &arm(", drive = { speed = 2.0 }, friction_torque = 1.0"),
-        HEAD.replace("duration = 200.0", "duration = 1.0, strategy = \"steps\"")
-            + &arm(", drive = { speed = 0.0 }"),
     ] {
         let made =
             Scene::parse(&text, SceneFormat::Toml).and_then(|scene| World::from_scene(&scene).map(|_| ()));
@@ -223,6 +221,5 @@ fn connectors_that_contradict_each_other_are_refused_with_both_names() {
     line 10: connector[0].pin.motor: missing field `max`
     line 10: connector[0].pin.motor.max: must be finite; a motor that holds its speed whatever it takes is a `drive`
     line 10: connector[0].pin.friction_torque: has no effect on a coordinate that is driven: give either this or `drive`
-    connector[0].pin: connector 0 (pin of "world" and "arm"): an advance by steps does not know drives yet; use the strategy of events
     "#);
 }

@@ -35,6 +35,7 @@ mod stacks;
 mod start;
 mod steps;
 mod steps_chosen;
+mod steps_mechanisms;
 mod steps_told;
 mod tolerance_slope;
 mod varied_forces;

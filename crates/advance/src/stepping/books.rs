@@ -7,6 +7,15 @@ use crate::rigid::{Counts, Ledger};
 use crate::stepping::bodies::{Bodies, Motion3, Nature};
 use crate::stepping::rows::{Rows, Source};
 
+/// Work [J] of some rows on bodies that can move.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Driven {
+    /// By drives, motors and bodies that are moved.
+    pub(super) drives: f64,
+    /// By dry friction in joints: the heat, negative.
+    pub(super) rubbing: f64,
+}
+
 /// Sums up to the middle of the present step, and powers [W] within it.
 #[derive(Debug, Default)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -15,6 +24,8 @@ pub(super) struct StepBooks {
     counts: Counts,
     contacts: f64,
     damping: f64,
+    drives: f64,
+    rubbing: f64,
     laws: Vec<f64>,
     /// Energy [J] that contacts have taken in the present step, and in the one before, and blows at the start of this.
     taken: f64,
@@ -53,10 +64,12 @@ impl StepBooks {
     pub(super) fn begin(&mut self, late: f64) {
         self.ledger.steps += late * self.contacts;
         self.ledger.damping += late * self.damping;
+        self.ledger.drives += late * self.drives;
+        self.ledger.friction += late * self.rubbing;
         for (work, power) in self.ledger.force_laws.iter_mut().zip(&mut self.laws) {
             *work += late * std::mem::take(power);
         }
-        (self.contacts, self.damping) = (0.0, 0.0);
+        (self.contacts, self.damping, self.drives, self.rubbing) = (0.0, 0.0, 0.0, 0.0);
         (self.spare, self.taken, self.blown) = (self.taken, 0.0, 0.0);
         self.counts.segments += 1;
         self.counts.events += 1;
@@ -88,6 +101,19 @@ impl StepBooks {
         if is_present {
             self.contacts += work / span;
             self.damping += damped;
+        }
+    }
+
+    /// Books what drives did in a time `span` [s] that ends in the middle of the step, of what has been booked of bodies.
+    pub(super) fn book_driven(&mut self, driven: Driven, span: f64, is_present: bool) {
+        let Driven { drives, rubbing } = driven;
+        self.ledger.steps -= drives + rubbing;
+        self.ledger.drives += drives;
+        self.ledger.friction += rubbing;
+        if is_present {
+            self.contacts -= (drives + rubbing) / span;
+            self.drives += drives / span;
+            self.rubbing += rubbing / span;
         }
     }
 
@@ -152,6 +178,8 @@ impl StepBooks {
         ledger.clone_from(&self.ledger);
         ledger.steps += late * self.contacts;
         ledger.damping += late * self.damping;
+        ledger.drives += late * self.drives;
+        ledger.friction += late * self.rubbing;
         for (work, power) in ledger.force_laws.iter_mut().zip(&self.laws) {
             *work += late * power;
         }

@@ -6,7 +6,8 @@ use crate::stepping::step::Stepper;
 use halfgap_collision::BodyId;
 
 /// A body is struck at the start of a step if contacts push it by more than in the step before, and by more than this share of what
-/// forces make in a step [-]: the mean of the velocities before and after is then none that it ever has.
+/// forces make in a step, and of what connectors made of its velocity in both [-]: the mean of the velocities before and after is then none
+/// that it ever has.
 const JUMP: f64 = 0.2;
 
 impl Stepper {
@@ -29,6 +30,7 @@ impl Stepper {
         last_span: Option<f64>,
         books: &mut StepBooks,
     ) {
+        self.lead(island);
         let (members, _) = self.islands.get(island);
         for &body in members {
             let place = body as usize;
@@ -44,7 +46,9 @@ impl Stepper {
                 let jump = |k: usize| course.push[k] - span / last_span * last.push[k];
                 farthest(bodies.natures[place].reach, std::array::from_fn(jump))
             });
-            let is_struck = course.jump > JUMP * self.fall;
+            let led = if self.rows.ties { self.led[place].velocity } else { [0.0; 3] };
+            course.led = span / kick * farthest(bodies.natures[place].reach, led);
+            let is_struck = course.jump > JUMP * self.fall.max(course.led.min(last.led));
             if let Some(last_span) = last_span
                 && (is_struck || last.delay > 0.0)
             {
@@ -77,6 +81,22 @@ impl Stepper {
         }
         let (members, _) = self.islands.get(island);
         self.book_laws(members, kick, true, books);
+        self.book_driven(bodies, (island, 1.0), (kick, true), books);
+    }
+
+    /// Finds what connectors make of the velocities of an island, if there are any.
+    fn lead(&mut self, island: usize) {
+        let Self { islands, rows, led, .. } = self;
+        if !rows.ties {
+            return;
+        }
+        let (members, list) = islands.get(island);
+        for &body in members {
+            led[body as usize].velocity = [0.0; 3];
+        }
+        for row in list.iter().map(|&row| &rows.all[row as usize]).filter(|row| row.is_tie()) {
+            row.push(led, row.normal.impulse);
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! The rows of an island as one problem, solved to rounding by the modes of its contacts.
 
+use crate::stepping::apart::Third;
 use crate::stepping::rows::{Line, Mover, Roll, Row};
 use crate::stepping::sweeps::Problem as Island;
-use crate::stepping::third::Third;
 use halfgap_contact::{
     InverseInertia, Modes, Problem, ProblemBody, Row as ProblemRow, RowKind, Settings, Solution, Solver,
     WarmStart,
@@ -108,15 +108,21 @@ impl Exact {
             self.first.push(normal as u32);
             // What overlaps a little, or has slipped a little, is brought back by the velocities: that keeps motions smooth.
             let back = if row.is_bilateral { 0.0 } else { row.gap.clamp(-slack, 0.0) / span };
-            let posed = self.posed(island, row, &row.normal, back);
-            self.add(if row.is_bilateral { posed.bilateral() } else { posed }, row.normal.impulse);
+            let offset = row.change_of(island.movers) + row.normal.offset + back;
+            let posed = self.posed(row, &row.jacobian(), row.third(), offset);
+            let posed = match row.bounds() {
+                _ if row.is_bilateral => posed.bilateral(),
+                [least, most] if row.pulls() => posed.bounded(least, most),
+                _ => posed,
+            };
+            self.add(posed, row.normal.impulse);
             if row.slip.line.is_some() {
-                let posed = self.posed(island, row, &row.slip.line, row.slip.off / span);
+                let posed = self.posed_line(island, row, &row.slip.line, row.slip.off / span);
                 self.add(posed.friction(normal, row.slip.bounds[0]), row.slip.line.impulse);
             }
             if let Some(roll) = row.roll {
                 let Roll { line, bound, .. } = &island.rolls[roll as usize];
-                self.add(self.posed(island, row, line, 0.0).friction(normal, *bound), line.impulse);
+                self.add(self.posed_line(island, row, line, 0.0).friction(normal, *bound), line.impulse);
             }
         }
         for &place in members {
@@ -124,17 +130,16 @@ impl Exact {
         }
     }
 
-    fn posed(&self, island: &Island<'_>, row: &Row, line: &Line, back: f64) -> ProblemRow {
-        let ends = row.ends();
-        let sides = ends.map(|place| self.bodies[place].map(ProblemBody));
-        let [p, q] = ends.map(|place| &island.movers[place].velocity);
-        let mut offset = line.rate(p, q) + line.offset + back;
-        if let Some(Third { place, arm }) = row.third {
-            offset += arm * island.movers[place as usize].velocity[2];
-        }
-        let of_two = ProblemRow::between(sides, &line.jacobian(), offset);
+    fn posed_line(&self, island: &Island<'_>, row: &Row, line: &Line, back: f64) -> ProblemRow {
+        let [p, q] = row.ends().map(|place| &island.movers[place].velocity);
+        self.posed(row, &line.jacobian(), None, line.rate(p, q) + line.offset + back)
+    }
+
+    fn posed(&self, row: &Row, jacobian: &[f64; 6], third: Option<Third>, offset: f64) -> ProblemRow {
+        let sides = row.ends().map(|place| self.bodies[place].map(ProblemBody));
+        let of_two = ProblemRow::between(sides, jacobian, offset);
         let third =
-            row.third.and_then(|Third { place, arm }| Some((ProblemBody(self.bodies[place as usize]?), arm)));
+            third.and_then(|Third { place, arm }| Some((ProblemBody(self.bodies[place as usize]?), arm)));
         let posed = match third {
             Some((body, arm)) => Some(ProblemRow::turning(of_two, body, arm, offset)),
             None => of_two,

@@ -1,9 +1,9 @@
 //! Impacts at the start of a step: contacts that have come fast, with all that touches them, by the impact law.
 
+use crate::stepping::apart::Third;
 use crate::stepping::bodies::{Bodies, Motion3};
 use crate::stepping::rows::{Mover, Row};
 use crate::stepping::settings::SteppingSettings;
-use crate::stepping::third::Third;
 use halfgap_collision::BodyId;
 use halfgap_contact::{
     CollisionRow, CollisionThird, FrictionRow, Impact, ImpactError, InverseInertia, RowKind,
@@ -31,7 +31,7 @@ impl Impacts {
         self.listed.clear();
         let takes_part = |&&row: &&u32| {
             let row = &rows[row as usize];
-            row.is_bilateral || row.touches && row.striking_rate(velocities) <= slow
+            row.is_bilateral || row.touches && !row.pulls() && row.striking_rate(velocities) <= slow
         };
         self.listed.extend(list.iter().filter(takes_part));
         let made = self.listed.iter().map(|&row| {
@@ -40,7 +40,7 @@ impl Impacts {
             let inertia = ids.map(|body| bodies.inertia(body));
             let kind = if row.is_bilateral { RowKind::Bilateral } else { RowKind::Unilateral };
             let rate = row.striking_rate(velocities);
-            let third = row.third.map(|Third { place, arm }| {
+            let third = row.third().map(|Third { place, arm }| {
                 let body = BodyId(place);
                 CollisionThird::new(body, arm, bodies.inertia(body))
             });
@@ -50,7 +50,7 @@ impl Impacts {
                 velocity_tol: slow,
                 kind,
                 was_active: row.strikes.is_none(),
-                ..CollisionRow::new(ids, row.normal.jacobian(), inertia, rate)
+                ..CollisionRow::new(ids, row.jacobian(), inertia, rate)
             }
         });
         self.impact.set_rows(made);
@@ -79,10 +79,10 @@ impl Impacts {
                 let velocity = velocities[if body.is_world() { bodies.count() } else { body.index() }];
                 Mover { velocity, inverse_mass, inverse_moment }
             });
-            row.normal.push(&mut p, &mut q, row.blows[0]);
+            row.push_two(&mut p, &mut q, row.blows[0]);
             row.slip.line.push(&mut p, &mut q, row.blows[1]);
             (velocities[a], velocities[b]) = (p.velocity, q.velocity);
-            if let Some(Third { place, arm }) = row.third {
+            if let Some(Third { place, arm }) = row.third() {
                 let inertia = bodies.inertia(BodyId(place));
                 velocities[place as usize][2] += inertia.inverse_moment * arm * row.blows[0];
             }

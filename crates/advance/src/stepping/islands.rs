@@ -30,7 +30,7 @@ impl Islands {
             if moves(a) && moves(b) {
                 self.forest.join(a, b);
             }
-            if row.third.is_some() {
+            if row.third().is_some() {
                 let mut ends = row.all_ends().filter(|&place| moves(place));
                 if let Some(first) = ends.next() {
                     ends.for_each(|other| {
@@ -53,7 +53,7 @@ impl Islands {
         }
         let of_row = |row: &Row| {
             let [a, b] = row.ends();
-            match row.third {
+            match row.third() {
                 Some(third) if !(moves(a) || moves(b)) => third.place as usize,
                 _ if moves(a) => a,
                 _ => b,

@@ -1,7 +1,7 @@
 //! Accelerations of bodies without contacts and connectors, and the work of what causes them.
 
 use crate::rigid::{ForceLaws, FreeMotion, Snapshot, Wrench, Wrenches};
-use crate::stepping::bodies::{Bodies, Motion3};
+use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use halfgap_collision::BodyId;
 
 /// Accelerations at the start of a step.
@@ -48,10 +48,10 @@ impl Kicks {
         }
     }
 
-    /// Largest acceleration of a centre of mass [m/s^2].
-    pub(super) fn fastest(&self) -> f64 {
-        let squares = self.accelerations.iter().map(|[x, y, _]| x * x + y * y);
-        squares.fold(0.0, f64::max).sqrt()
+    /// Bound on the acceleration [m/s^2] that any point of a body has, if it does not turn.
+    pub(super) fn fastest(&self, bodies: &Bodies) -> f64 {
+        let all = bodies.natures.iter().zip(&self.accelerations);
+        all.map(|(nature, &acceleration)| farthest(nature.reach, acceleration)).fold(0.0, f64::max)
     }
 
     /// Power [W] of each law without potential on a body, if it is among some, at the velocities that `velocity` tells.

@@ -234,8 +234,9 @@ fn add_contact(
     let bend = if span * turn <= STRAIGHT { 0.5 * span } else { 0.0 };
     let mut row = Row {
         places: ids.map(|body| body.0),
-        third: None,
+        apart: None,
         is_bilateral: false,
+        prescribed: None,
         presses: contact.presses,
         touches: contact.presses || gap <= slack,
         roll: None,
@@ -281,10 +282,7 @@ fn add_contact(
         line.impulse = span * contact.forces[2];
         rows.rolls.push(Roll { row: rows.all.len() as u32, line, bound: surface.rolling * radius });
     }
-    // It has come to touch without having been slowed down before.
-    if row.strikes.is_none() && row.touches && !row.presses && row.rebounds() && kinematics.rate < 0.0 {
-        row.strikes = Some(-kinematics.rate);
-    }
+    row.meet(kinematics.rate);
     rows.push(row);
 }
 

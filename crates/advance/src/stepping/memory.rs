@@ -23,7 +23,11 @@ pub(super) fn remember(
             let tie = &mut scene.ties.memory[connector as usize];
             let last = std::mem::replace(&mut tie.forces[direction as usize], share * normal);
             (tie.presses, tie.arrival) = (presses, row.arrives);
-            if row.is_bilateral { None } else { Change::of(&mut tie.is_told, last, share * normal) }
+            if row.is_bilateral || row.pulls() {
+                None
+            } else {
+                Change::of(&mut tie.is_told, last, share * normal)
+            }
         }
         Source::Contact { pair, contact } => {
             let contact = &mut scene.pairs.all_mut()[pair as usize].contacts[contact as usize];

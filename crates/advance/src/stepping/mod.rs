@@ -4,16 +4,18 @@
 //! before.
 //!
 //! `settings` · `balance`: what impulses may give · `bodies`: where bodies are, how they go through the step · `pairs`: which are near each other · `contacts`: what is
-//! remembered of where they touch · `facing`: on which side · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `third`, `listing`: what contacts
+//! remembered of where they touch · `facing`: on which side · `ties`: connectors · `kicks`: accelerations without contacts · `rows`, `apart`, `listing`: what contacts
 //! and connectors ask of velocities · `islands` · `solving`, `exact`, `sweeps`, `swept`: impulses · `impacts` · `report`: what callers are told ·
 //! `pacing`: how long steps are · `projection`: back to the gaps · `passing`: what would pass through something · `sleep` · `memory` · `striking`, `departure`, `step`:
-//! from one step to the next · `books` · `system`, `intervention`: what callers see and change.
+//! from one step to the next · `books`, `driving`: where energy went · `system`, `intervention`: what callers see and change.
 
+mod apart;
 mod balance;
 mod bodies;
 mod books;
 mod contacts;
 mod departure;
+mod driving;
 mod exact;
 mod facing;
 mod impacts;
@@ -36,7 +38,6 @@ mod striking;
 mod sweeps;
 mod swept;
 mod system;
-mod third;
 mod ties;
 
 #[cfg(feature = "save")]

@@ -1,5 +1,5 @@
-//! Displacements that bring bodies which overlap, and connectors that have come apart, back to their gaps: the least in the metric of
-//! the masses, found by sweeps.
+//! Displacements that bring bodies which overlap back to their gaps: the least in the metric of the masses, found by sweeps. Connectors keep
+//! together what they have; the velocities of a step bring back what has come apart.
 
 use crate::stepping::bodies::{Bodies, Motion3, farthest};
 use crate::stepping::books::StepBooks;
@@ -34,7 +34,7 @@ impl Shifts {
         asked.clear();
         for (index, row) in rows.iter_mut().enumerate() {
             row.normal.before = 0.0;
-            if row.is_bilateral || row.gap < 0.0 {
+            if !row.is_bilateral && row.gap < 0.0 {
                 asked.push(index as u32);
             }
         }
@@ -55,7 +55,7 @@ impl Shifts {
             let [a, b] = row.ends();
             if row.all_ends().map(|place| changes[place]).sum::<f64>() > 0.0 {
                 let [p, q] = [a, b].map(|place| &movers[place].velocity);
-                row.gap += row.rate_of(movers);
+                row.gap += row.change_of(movers);
                 row.slip.off += row.slip.line.rate(p, q);
             }
         }
@@ -99,9 +99,9 @@ fn lift(bodies: &Bodies, place: usize, [x, y, _]: Motion3) -> f64 {
     }
 }
 
-/// Gives a row the displacement by which its gap is none, or none if it is open; returns the change of the gap [m].
+/// Gives a row the displacement by which its gap is none, or none if it is open, and that by which a connector stays as it is; returns the change of the gap [m].
 fn visit(row: &mut Row, shifts: &mut [Mover], changes: &mut [f64]) -> f64 {
-    let lacking = row.rate_of(shifts) + row.gap;
+    let lacking = row.change_of(shifts) + if row.is_bilateral { 0.0 } else { row.gap };
     let before = row.normal.before;
     let wanted = before - lacking * row.normal.weight;
     let impulse = if row.is_bilateral { wanted } else { wanted.max(0.0) } - before;

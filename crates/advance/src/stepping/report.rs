@@ -35,7 +35,7 @@ pub(super) fn add_rows<'a>(
                 record_features([&moments[0], &moments[1]], features, tolerances, time)
             }
             Source::Connector { connector, direction } => {
-                let sample = scene.ties.measure(bodies, connector as usize, direction as usize);
+                let sample = scene.ties.measure(bodies, (connector as usize, direction as usize), time);
                 let (id, tie) = (ConnectorId(connector), &scene.ties.all[connector as usize]);
                 let sides: [&Moving; 2] = [&moving[0], &moving[1]];
                 Some(Collision::of_connector(id, direction, tie, &sample, sides, tolerances, time))
@@ -72,8 +72,8 @@ impl Pair {
     }
 }
 
-/// Forces of all rows of a step that carry one, and then those between bodies that sleep.
-pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
+/// Forces of all rows of a step that begins at a time [s], of those that carry one, and then those between bodies that sleep.
+pub(super) fn row_forces(scene: &Scene, rows: &Rows, time: f64) -> Vec<RowForce> {
     let Scene { bodies, pairs, ties, sleep, .. } = scene;
     let sleeps = |body: BodyId| bodies.is_fixed(body) || sleep.is_asleep(body.index());
     let mut all = Vec::new();
@@ -101,7 +101,7 @@ pub(super) fn row_forces(scene: &Scene, rows: &Rows) -> Vec<RowForce> {
     let tied = ties.all.iter().zip(&ties.memory).enumerate();
     for (index, (connector, tie)) in tied.filter(|(_, (tie, _))| tie.all_bodies().all(sleeps)) {
         for (direction, &force) in tie.forces.iter().enumerate().filter(|&(_, &force)| force != 0.0) {
-            let sample = ties.measure(bodies, index, direction);
+            let sample = ties.measure(bodies, (index, direction), time);
             let [x, y, turning, ..] = sample.kinematics.jacobian;
             let place = (sample.point_a, DVec2::new(x, y), turning);
             let origin = (Some(ConnectorId(index as u32)), None);

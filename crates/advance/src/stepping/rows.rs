@@ -1,11 +1,11 @@
 //! The rows of a step: what contacts and connectors ask of the velocities with which bodies go through it.
 //!
 //! *Invariant*: a row acts on two bodies by their places; that of the background is behind the last body, and nothing moves it. Few rows
-//! act on the rotation of a third.
+//! are of another form: see `apart`.
 
+use crate::stepping::apart::Apart;
 use crate::stepping::balance::Balance;
 use crate::stepping::bodies::Motion3;
-use crate::stepping::third::Third;
 use glam::DVec2;
 use halfgap_collision::BodyId;
 use halfgap_contact::InverseInertia;
@@ -63,9 +63,8 @@ impl Line {
         Self { x, y, a, b, compliance, weight, offset, ..Self::default() }
     }
 
-    /// The same where a third body takes part, too, with its square [1/kg].
-    pub(super) fn with_square(self, square: f64) -> Self {
-        let compliance = self.compliance + square;
+    /// The same with another compliance [1/kg].
+    pub(super) fn with_compliance(self, compliance: f64) -> Self {
         let weight = if compliance > 0.0 { 1.0 / compliance } else { 0.0 };
         Self { compliance, weight, ..self }
     }
@@ -173,6 +172,8 @@ pub(super) struct Roll {
 pub(super) struct Lengths {
     /// Length of the step [s].
     pub(super) span: f64,
+    /// Time at its start [s].
+    pub(super) time: f64,
     /// Time since the start of the step before [s].
     pub(super) since_last: f64,
     /// Speed that forces give in the step [m/s].
@@ -188,9 +189,12 @@ pub(super) struct Lengths {
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Row {
     pub(super) places: [u32; 2],
-    pub(super) third: Option<Third>,
+    /// What it has beyond its line, if it is not of the form of contacts.
+    pub(super) apart: Option<Apart>,
     /// The rate may neither be negative nor positive.
     pub(super) is_bilateral: bool,
+    /// Part of the rate [m/s] that a drive or a motor prescribes; none for what does not drive.
+    pub(super) prescribed: Option<f64>,
     /// It carried a force in the last step.
     pub(super) presses: bool,
     /// It did, or is close enough for one.
@@ -221,15 +225,15 @@ impl Row {
         self.places.map(|place| place as usize)
     }
 
-    /// The places of all bodies on which it acts.
-    #[inline(always)]
-    pub(super) fn all_ends(&self) -> impl Iterator<Item = usize> + use<> {
-        self.ends().into_iter().chain(self.third.map(|third| third.place as usize))
-    }
-
     /// Its two bodies, among so many.
     pub(super) fn bodies(&self, count: usize) -> [BodyId; 2] {
         self.places.map(|place| if place as usize == count { BodyId::WORLD } else { BodyId(place) })
+    }
+
+    /// True for a direction of a connector.
+    #[inline]
+    pub(super) fn is_tie(&self) -> bool {
+        matches!(self.source, Source::Connector { .. })
     }
 
     /// True if an impact gives back some of the speed that it takes.
@@ -238,32 +242,19 @@ impl Row {
         self.elasticity > 0.0 || self.slip.elasticity > 0.0
     }
 
-    /// J v [m/s] along the normal.
+    /// Lets the row strike if it has come to touch, at a rate [m/s], without having been slowed down before.
+    pub(super) fn meet(&mut self, rate: f64) {
+        let is_met = !self.is_bilateral && !self.pulls();
+        let has_come = is_met && self.touches && !self.presses && rate < 0.0;
+        if self.strikes.is_none() && has_come && self.rebounds() {
+            self.strikes = Some(-rate);
+        }
+    }
+
+    /// J v [m/s] along the normal, with what is prescribed.
     #[inline]
     pub(super) fn rate(&self, velocities: &[Motion3]) -> f64 {
-        let [a, b] = self.ends();
-        let of_two = self.normal.rate(&velocities[a], &velocities[b]);
-        self.third.map_or(of_two, |third| of_two + third.rate(velocities))
-    }
-
-    /// J v [m/s] along the normal of velocities that are looked for.
-    #[inline]
-    pub(super) fn rate_of(&self, movers: &[Mover]) -> f64 {
-        let [p, q] = self.ends().map(|place| &movers[place].velocity);
-        let of_two = self.normal.rate(p, q);
-        self.third.map_or(of_two, |third| of_two + third.arm * movers[third.place as usize].velocity[2])
-    }
-
-    /// Adds what an impulse along the normal changes to the velocities.
-    #[inline]
-    pub(super) fn push(&self, movers: &mut [Mover], impulse: f64) {
-        let [a, b] = self.ends();
-        let (mut p, mut q) = (movers[a], movers[b]);
-        self.normal.push(&mut p, &mut q, impulse);
-        (movers[a], movers[b]) = (p, q);
-        if let Some(third) = &self.third {
-            third.push(movers, impulse);
-        }
+        self.change(velocities) + self.prescribed.unwrap_or(0.0)
     }
 
     /// J v [m/s] along the normal, or the speed of the impact against it if that is more.
@@ -289,15 +280,12 @@ impl Row {
     /// Adds to the velocities what the impulses of the row change.
     #[inline]
     pub(super) fn push_impulses(&self, movers: &mut [Mover]) {
-        let [a, b] = self.ends();
-        let (mut p, mut q) = (movers[a], movers[b]);
-        self.normal.push(&mut p, &mut q, self.normal.impulse);
+        self.push(movers, self.normal.impulse);
         if self.slip.line.is_some() {
+            let [a, b] = self.ends();
+            let (mut p, mut q) = (movers[a], movers[b]);
             self.slip.line.push(&mut p, &mut q, self.slip.line.impulse);
-        }
-        (movers[a], movers[b]) = (p, q);
-        if let Some(third) = &self.third {
-            third.push(movers, self.normal.impulse);
+            (movers[a], movers[b]) = (p, q);
         }
     }
 }
@@ -308,29 +296,32 @@ impl Row {
 pub(super) struct Rows {
     pub(super) all: Vec<Row>,
     pub(super) rolls: Vec<Roll>,
-    /// Deepest overlap, and largest error of a connector [m].
+    /// Deepest overlap [m].
     pub(super) deepest: f64,
-    pub(super) farthest_off: f64,
     /// Some contact has struck, some rebounds.
     pub(super) strikes: bool,
     pub(super) rebounds: bool,
+    /// There is a row of a connector; some drive, or rub.
+    pub(super) ties: bool,
+    pub(super) drives: bool,
 }
 
 impl Rows {
     pub(super) fn clear(&mut self) {
         self.all.clear();
         self.rolls.clear();
-        (self.deepest, self.farthest_off, self.strikes, self.rebounds) = (0.0, 0.0, false, false);
+        self.deepest = 0.0;
+        (self.strikes, self.rebounds, self.ties, self.drives) = (false, false, false, false);
     }
 
     pub(super) fn push(&mut self, row: Row) {
-        if row.is_bilateral {
-            self.farthest_off = self.farthest_off.max(row.gap.abs());
-        } else {
+        if !row.is_bilateral {
             self.deepest = self.deepest.max(-row.gap);
         }
         self.strikes |= row.strikes.is_some();
         self.rebounds |= row.rebounds();
+        self.ties |= row.is_tie();
+        self.drives |= row.prescribed.is_some() || row.pulls();
         self.all.push(row);
     }
 }

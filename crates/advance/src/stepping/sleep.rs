@@ -116,6 +116,7 @@ impl Sleep {
         }
         let drives = |row: &Row| {
             row.slip.running != 0.0
+                || row.prescribed.is_some()
                 || row.all_ends().any(|place| {
                     place < bodies.count()
                         && bodies.natures[place].body.is_fixed()

@@ -35,7 +35,7 @@ fn explodes(problem: &Problem<'_>, members: &[u32], free: &[Motion3]) -> bool {
     for &row in list.iter() {
         let row = &rows[row as usize];
         let [p, q] = row.ends().map(|place| &movers[place].velocity);
-        let closing = row.rate(before) + row.rate_of(movers);
+        let closing = row.rate(before) + (row.change_of(movers) + row.prescribed.unwrap_or(0.0));
         let slipping = row.slip_rate(before) + row.slip.line.rate(p, q);
         row.weigh([row.normal.impulse, row.slip.line.impulse], [closing, slipping], &mut balance);
     }

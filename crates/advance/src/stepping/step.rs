@@ -82,8 +82,12 @@ pub(super) struct Stepper {
     /// Rows of an island that touch, and its resistances against rolling.
     pub(super) touching: Vec<u32>,
     rolling: Vec<u32>,
-    /// Mean velocities over the kick that leads to the middle of the step.
+    /// Mean velocities over the kick that leads to the middle of the step; of fixed bodies those at its start.
     pub(super) means: Vec<Motion3>,
+    /// What connectors make of the velocities of bodies.
+    pub(super) led: Vec<Mover>,
+    /// Something drives, or rubs in a joint.
+    pub(super) is_driven: bool,
     #[cfg_attr(feature = "save", serde(skip))]
     shifts: Shifts,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -131,12 +135,14 @@ impl Stepper {
     ) {
         scene.bodies.lead(time, span);
         self.kicks.find(&scene.bodies, &scene.laws, time);
-        self.fall = span * self.kicks.fastest();
+        let fastest = self.kicks.fastest(&scene.bodies);
+        self.fall = span * fastest;
         scene.bodies.set_kick(if from.is_start() { span } else { from.kick(span) });
         self.find_free(&scene.bodies, span, from);
         let target_gap = settings.rigid.tolerances.target_gap;
         let lengths = Lengths {
             span,
+            time,
             since_last: from.since_last(),
             fall: self.fall,
             target_gap,
@@ -148,12 +154,16 @@ impl Stepper {
         self.changes.clear(Time::from_seconds(time));
         self.changes.end.append(&mut self.listing.ended);
         // What the steps leave open anyway is not worth a shift.
-        let slack = settings.slack.max(settings.residual * span * span * self.kicks.fastest());
-        let shifts = self.rows.deepest > slack || self.rows.farthest_off > slack;
+        let slack = settings.slack.max(settings.residual * span * span * fastest);
+        let shifts = self.rows.deepest > slack;
         if shifts {
             self.shifts.find(bodies, &mut self.rows.all, slack);
         }
         books.note_gaps(&self.rows, target_gap);
+        self.is_driven = self.is_driven(bodies);
+        if self.rows.ties {
+            self.led.clone_from(&self.movers);
+        }
         self.islands.find(bodies, |place| !sleep.is_asleep(place), &self.rows.all);
         self.residual = settings.residual * self.fall;
         for island in 0..self.islands.count() {
@@ -196,10 +206,9 @@ impl Stepper {
         self.free.push([0.0; 3]);
         self.movers.clear();
         self.movers.extend(self.free.iter().enumerate().map(|(place, &free)| bodies.mover(place, free)));
-        if self.smooth.len() != self.movers.len() {
-            self.smooth.clone_from(&self.movers);
-        }
-        self.means.resize(self.node.len(), [0.0; 3]);
+        // Those of fixed bodies stay; islands write over the others.
+        self.smooth.clone_from(&self.movers);
+        self.means.clone_from(&self.node);
     }
 
     /// Finds the motion of an island through the step.
@@ -232,6 +241,9 @@ impl Stepper {
                 if kick != span {
                     row.normal.impulse *= kick / span;
                     row.slip.line.impulse *= kick / span;
+                    if let Some(apart) = &mut row.apart {
+                        apart.most *= kick / span;
+                    }
                 }
             }
             books.note_solve();
@@ -288,7 +300,7 @@ impl Stepper {
             if row.touches || row.normal.impulse <= 0.0 || !row.rebounds() {
                 continue;
             }
-            let kick = row.rate(&self.kicks.accelerations);
+            let kick = row.change(&self.kicks.accelerations);
             let (rate, acceleration) = (row.rate(&self.node), kick + row.gamma);
             let speed = (rate * rate - 2.0 * acceleration * row.gap).max(0.0).sqrt();
             if speed > settings.rigid.tolerances.velocity_tol.max(SLOW_STEPS * span * kick.abs()) {

@@ -3,9 +3,10 @@
 use crate::rigid::ImpactReport;
 use crate::stepping::balance::Balance;
 use crate::stepping::bodies::{Bodies, Motion3};
-use crate::stepping::books::StepBooks;
+use crate::stepping::books::{Driven, StepBooks};
 use crate::stepping::kicks::kicked;
 use crate::stepping::report;
+use crate::stepping::rows::Row;
 use crate::stepping::settings::SteppingSettings;
 use crate::stepping::solving::LARGEST_SMALL;
 use crate::stepping::step::{From, SLOW_STEPS, Scene, Stepper};
@@ -39,6 +40,8 @@ impl Stepper {
                 self.means[body as usize] = mean;
             }
             self.book_laws(members, 0.5 * last, false, books);
+            // Rows begin with the forces of the last step.
+            self.book_driven(bodies, (island, 0.5 * last / span), (0.5 * last, false), books);
         }
         let (members, list) = self.islands.get(island);
         let before = energy(bodies, members, &self.node);
@@ -55,7 +58,7 @@ impl Stepper {
                     books.counts().impacts,
                 )
                 .is_ok()
-            && !self.balance(island).explodes(before);
+            && !self.balance(bodies, island).explodes(before);
         if !is_resolved {
             let (members, _) = self.islands.get(island);
             members.iter().for_each(|&body| self.node[body as usize] = self.before[body as usize]);
@@ -82,15 +85,20 @@ impl Stepper {
     }
 
     /// What the blows of an island did.
-    fn balance(&self, island: usize) -> Balance {
+    fn balance(&self, bodies: &Bodies, island: usize) -> Balance {
         let mut balance = Balance::default();
+        let mut driven = Driven::default();
         let (_, list) = self.islands.get(island);
         for &row in list {
             let row = &self.rows.all[row as usize];
             let closing = row.rate(&self.before) + row.rate(&self.node);
             let slipping = row.slip_rate(&self.before) + row.slip_rate(&self.node);
             row.weigh(row.blows, [closing, slipping], &mut balance);
+            if self.is_driven {
+                row.drive_blow(row.blows, bodies, [&self.before, &self.node], &mut driven);
+            }
         }
+        balance.give(driven.drives);
         balance
     }
 
@@ -99,44 +107,60 @@ impl Stepper {
     fn strike_many(&mut self, bodies: &Bodies, island: usize, slow: f64, share: f64) {
         let enough = Enough::new(share, self.fall);
         let (members, list) = self.islands.get(island);
-        let Self { rows, touching, kept, smooth, node, sweeps, .. } = self;
+        let Self { rows, touching, kept, smooth, movers, before, node, sweeps, is_driven, .. } = self;
         touching.clear();
-        touching.extend(list.iter().filter(|&&row| rows.all[row as usize].touches));
+        touching.extend(list.iter().filter(|&&row| {
+            let row = &rows.all[row as usize];
+            row.touches && !row.pulls()
+        }));
         kept.clear();
         for &row in touching.iter() {
             let row = &mut rows.all[row as usize];
             let rate = row.striking_rate(node);
             let rebounds = if rate < -slow { row.elasticity * rate } else { 0.0 };
             kept.push([row.normal, row.slip.line]);
-            (row.normal.offset, row.normal.impulse) = (rebounds, 0.0);
+            (row.normal.offset, row.normal.impulse) = (rebounds + row.prescribed.unwrap_or(0.0), 0.0);
             (row.slip.line.offset, row.slip.line.impulse) = (-row.slip.running, 0.0);
         }
-        let before = energy(bodies, members, node);
+        let energy_before = energy(bodies, members, before);
+        // Bodies that are moved have another velocity in the middle of the step.
+        let places = |rows: &[Row], row: u32| rows[row as usize].all_ends();
+        for place in touching.iter().flat_map(|&row| places(&rows.all, row)) {
+            smooth[place].velocity = before[place];
+        }
         for is_elastic in [true, false] {
             for &body in members {
-                smooth[body as usize].velocity = node[body as usize];
+                smooth[body as usize].velocity = before[body as usize];
             }
             if !is_elastic {
-                touching.iter().for_each(|&row| rows.all[row as usize].normal.offset = 0.0);
+                for &row in touching.iter() {
+                    let row = &mut rows.all[row as usize];
+                    row.normal.offset = row.prescribed.unwrap_or(0.0);
+                }
             }
             let (list, rolls) = (touching.as_slice(), &mut rows.rolls);
             let mut problem =
-                Problem { rows: &mut rows.all, list, rolls, rolling: &[], movers: smooth, before: node };
+                Problem { rows: &mut rows.all, list, rolls, rolling: &[], movers: smooth, before };
             sweeps.solve(&mut problem, members, enough);
-            let after = members
-                .iter()
-                .map(|&body| bodies.kinetic_energy(body as usize, smooth[body as usize].velocity));
-            if after.sum::<f64>() <= before {
+            for &body in members {
+                node[body as usize] = smooth[body as usize].velocity;
+            }
+            let mut driven = Driven::default();
+            for row in touching.iter().map(|&row| &rows.all[row as usize]).filter(|_| *is_driven) {
+                let blows = [row.normal.impulse, row.slip.line.impulse];
+                row.drive_blow(blows, bodies, [before, node], &mut driven);
+            }
+            if energy(bodies, members, node) - driven.drives <= energy_before {
                 break;
             }
+        }
+        for place in touching.iter().flat_map(|&row| places(&rows.all, row)) {
+            smooth[place].velocity = movers[place].velocity;
         }
         for (&row, [normal, slip]) in touching.iter().zip(kept.iter()) {
             let row = &mut rows.all[row as usize];
             row.blows = [row.normal.impulse, row.slip.line.impulse];
             (row.normal, row.slip.line) = (*normal, *slip);
-        }
-        for &body in members {
-            node[body as usize] = smooth[body as usize].velocity;
         }
     }
 
@@ -151,11 +175,11 @@ impl Stepper {
         let mut fastest = 0.0_f64;
         for &row in list {
             let row = &self.rows.all[row as usize];
-            slow = slow.max(SLOW_STEPS * span * row.rate(&self.kicks.accelerations).abs());
+            slow = slow.max(SLOW_STEPS * span * row.change(&self.kicks.accelerations).abs());
             let closing = match (row.strikes, from) {
                 (Some(speed), _) => speed,
                 (None, From::Start(_)) if row.is_bilateral => row.rate(&self.node).abs(),
-                (None, From::Start(_)) if row.touches => -row.rate(&self.node),
+                (None, From::Start(_)) if row.touches && !row.pulls() => -row.rate(&self.node),
                 _ => 0.0,
             };
             fastest = fastest.max(closing);

@@ -7,7 +7,7 @@
 
 use crate::stepping::bodies::Motion3;
 use crate::stepping::rows::{Mover, Roll, Row};
-use crate::stepping::swept::Swept;
+use crate::stepping::swept::{Swept, SweptApart};
 
 /// Largest number of visits of a row on average: what they leave is corrected in the steps that follow.
 const MOST_VISITS: f64 = 200.0;
@@ -76,8 +76,8 @@ pub(super) struct Sweeps {
     changes: Vec<f64>,
     /// Rows of the present sweep.
     asked: Vec<u32>,
-    /// Rows that act on three bodies. They are held after all others.
-    of_three: Vec<u32>,
+    /// Rows that are not of the form of contacts. They are held after all others.
+    apart: Vec<SweptApart>,
 }
 
 impl Sweeps {
@@ -89,9 +89,9 @@ impl Sweeps {
         for row in &self.rows {
             row.push(movers, row.impulses);
         }
-        let of_three = std::mem::take(&mut self.of_three);
-        for &row in &of_three {
-            let row = &rows[row as usize];
+        let mut apart = std::mem::take(&mut self.apart);
+        for other in &apart {
+            let row = &rows[other.row as usize];
             row.push(movers, row.normal.impulse);
         }
         for &roll in rolling.iter() {
@@ -102,7 +102,7 @@ impl Sweeps {
             (movers[a], movers[b]) = (p, q);
         }
         let is_solved = self.sweep((movers, members), enough, |swept, movers, changes| {
-            let held = hold_three(rows, &of_three, movers, changes);
+            let held = hold_apart(rows, &apart, movers, changes);
             if rolling.is_empty() {
                 return held;
             }
@@ -112,8 +112,9 @@ impl Sweeps {
             hold_rolling(rows, (rolls, rolling), movers);
             held
         });
-        self.of_three = of_three;
-        self.lose(movers);
+        self.lose(rows, &apart, movers);
+        apart.clear();
+        self.apart = apart;
         for swept in &self.rows {
             let row = &mut rows[list[swept.listed as usize] as usize];
             [row.normal.impulse, row.slip.line.impulse] = swept.impulses;
@@ -129,8 +130,8 @@ impl Sweeps {
         movers: &[Mover],
         before: &[Motion3],
     ) {
-        let Self { depths, firsts, asked, order, of_three, .. } = self;
-        of_three.clear();
+        let Self { depths, firsts, asked, order, apart, .. } = self;
+        apart.clear();
         depths.resize(movers.len(), 0);
         members.iter().for_each(|&body| depths[body as usize] = 0);
         firsts.clear();
@@ -147,7 +148,7 @@ impl Sweeps {
             }
             firsts[depth as usize] += 1;
             asked.push(depth);
-            of_three.extend(rows[row as usize].third.map(|_| row));
+            apart.extend(SweptApart::of(rows, row, movers, before));
         }
         let mut next = 0;
         for first in firsts.iter_mut() {
@@ -165,13 +166,13 @@ impl Sweeps {
             order
                 .iter()
                 .map(|&listed| (&rows[list[listed as usize] as usize], listed))
-                .filter(|(row, _)| row.third.is_none())
+                .filter(|(row, _)| row.apart.is_none())
                 .map(|(row, listed)| Swept::of(row, listed, movers, before)),
         );
     }
 
     /// Takes back as much of all impulses as gives energy to the bodies: what sweeps leave unsolved may push apart what parts by itself.
-    fn lose(&mut self, movers: &mut [Mover]) {
+    fn lose(&mut self, rows: &mut [Row], apart: &[SweptApart], movers: &mut [Mover]) {
         // The work of a share s of the impulses is s first + s^2 second.
         let (mut first, mut second) = (0.0, 0.0);
         for row in &self.rows {
@@ -183,10 +184,21 @@ impl Sweeps {
             first += row.free[0] * normal + row.free[1] * slip;
             second += 0.5 * (pushed[0] * normal + pushed[1] * slip);
         }
+        for other in apart {
+            let row = &rows[other.row as usize];
+            let impulse = row.normal.impulse;
+            first += other.free * impulse;
+            second += 0.5 * (row.change_of(movers) - other.kicked) * impulse;
+        }
         if first + second <= 0.0 {
             return;
         }
         let kept = (-first / second).max(0.0);
+        for other in apart {
+            let row = &mut rows[other.row as usize];
+            row.push(movers, (kept - 1.0) * row.normal.impulse);
+            row.normal.impulse *= kept;
+        }
         for row in &mut self.rows {
             row.push(movers, row.impulses.map(|impulse| (kept - 1.0) * impulse));
             row.impulses = row.impulses.map(|impulse| kept * impulse);
@@ -291,15 +303,12 @@ fn ask(rows: &[Swept], (members, changes): (&[u32], &mut [f64]), residual: f64, 
     }
 }
 
-/// Lets rows of three bodies do what is asked of them; returns the largest change of a rate by that [m/s].
-fn hold_three(rows: &mut [Row], of_three: &[u32], movers: &mut [Mover], changes: &mut [f64]) -> f64 {
+/// Lets the rows that are visited apart do what is asked of them; returns the largest change of a rate by that [m/s].
+fn hold_apart(rows: &mut [Row], apart: &[SweptApart], movers: &mut [Mover], changes: &mut [f64]) -> f64 {
     let mut most = 0.0f64;
-    for &row in of_three {
-        let row = &mut rows[row as usize];
-        let impulse = -(row.rate_of(movers) + row.normal.offset) * row.normal.weight;
-        row.push(movers, impulse);
-        row.normal.impulse += impulse;
-        let change = (impulse * row.normal.compliance).abs();
+    for other in apart {
+        let row = &mut rows[other.row as usize];
+        let change = row.hold(movers);
         row.all_ends().for_each(|place| changes[place] += change);
         most = most.max(change);
     }

@@ -23,7 +23,7 @@ pub(super) struct Swept {
     pub(super) least: f64,
     /// As of [`Slip`](crate::stepping::rows::Slip).
     pub(super) bounds: [f64; 2],
-    /// Mean rates over the kick without the impulses, less the speeds of the surfaces [m/s].
+    /// Mean rates over the kick without the impulses, less what drives and surfaces prescribe [m/s].
     pub(super) free: [f64; 2],
     /// Rates without the impulses [m/s].
     pub(super) kicked: [f64; 2],
@@ -35,6 +35,27 @@ pub(super) struct Swept {
     pub(super) noted: [u32; 2],
     /// Place in the list of the island.
     pub(super) listed: u32,
+}
+
+/// A row that is visited apart from the others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SweptApart {
+    pub(super) row: u32,
+    /// Mean rate over the kick without the impulses, less what drives prescribe [m/s].
+    pub(super) free: f64,
+    /// Rate without the impulses [m/s].
+    pub(super) kicked: f64,
+}
+
+impl SweptApart {
+    /// The row at a place, if it is to be visited apart; the velocities do not include the impulses yet.
+    pub(super) fn of(rows: &[Row], place: u32, movers: &[Mover], before: &[Motion3]) -> Option<Self> {
+        let row = &rows[place as usize];
+        row.apart?;
+        let kicked = row.change_of(movers);
+        let free = 0.5 * (row.change(before) + kicked) + row.prescribed.unwrap_or(0.0);
+        Some(Self { row: place, free, kicked })
+    }
 }
 
 impl Swept {
@@ -54,7 +75,7 @@ impl Swept {
             coupling: slip.coupling(normal, ends),
             least: if row.is_bilateral { f64::NEG_INFINITY } else { 0.0 },
             bounds: row.slip.bounds,
-            free: [mean(normal), mean(slip) - row.slip.running],
+            free: [mean(normal) + row.prescribed.unwrap_or(0.0), mean(slip) - row.slip.running],
             kicked: [kicked(normal), kicked(slip)],
             before: [normal.impulse, slip.impulse],
             conjugate: [0.0; 2],

@@ -188,7 +188,7 @@ impl SteppingSystem {
     /// Forces of all rows that carry one in the present step, and then those between bodies that sleep.
     #[must_use]
     pub fn row_forces(&self) -> Vec<RowForce> {
-        report::row_forces(&self.scene, &self.stepper.rows)
+        report::row_forces(&self.scene, &self.stepper.rows, self.node.seconds())
     }
 
     /// Writes the energy ledger at a time of the present step over `ledger`, whose buffer is used again.

@@ -1,8 +1,8 @@
 //! Connectors: what is remembered of them from one step to the next, and their rows.
 
+use crate::stepping::apart::{Apart, Third};
 use crate::stepping::bodies::Bodies;
 use crate::stepping::rows::{Lengths, Line, Row, Rows, Slip, Source};
-use crate::stepping::third::Third;
 use halfgap_collision::{Connector, ConnectorKind, ConnectorSample, Moving, RailHint, Surroundings};
 
 /// What is remembered of a connector.
@@ -46,13 +46,18 @@ impl Ties {
         }
     }
 
-    /// Measures a direction of a connector.
-    pub(super) fn measure(&self, bodies: &Bodies, index: usize, direction: usize) -> ConnectorSample {
+    /// Measures a direction of a connector at a time [s].
+    pub(super) fn measure(
+        &self,
+        bodies: &Bodies,
+        (index, direction): (usize, usize),
+        time: f64,
+    ) -> ConnectorSample {
         let connector = &self.all[index];
         let [a, b] = connector.bodies().map(|body| bodies.moving(body));
         let carrier = connector.third().map_or(Moving::BACKGROUND, |(body, _)| bodies.moving(body));
         let hint = self.memory[index].hint.as_ref();
-        let surroundings = Surroundings { carrier: &carrier, hint, ..Surroundings::default() };
+        let surroundings = Surroundings { time, carrier: &carrier, hint, ..Surroundings::default() };
         connector.measure_in(direction, [&a, &b], &surroundings)
     }
 
@@ -64,45 +69,69 @@ impl Ties {
         lengths: Lengths,
         rows: &mut Rows,
     ) {
-        let Lengths { span, slack, .. } = lengths;
         for (index, connector) in self.all.iter().enumerate() {
-            let tie = &self.memory[index];
-            let ids = connector.bodies();
             // Bodies that are tied sleep together.
             if connector.all_bodies().all(|body| bodies.is_fixed(body) || is_asleep(body.index())) {
                 continue;
             }
-            let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
-            let third = connector.third().map(|(body, arm)| Third { place: body.0, arm });
-            let square = third.map_or(0.0, |Third { place, arm }| {
-                bodies.inertia_in_step(place as usize).inverse_moment * arm * arm
-            });
-            let is_bilateral = connector.is_bilateral();
             for direction in 0..connector.row_count() {
-                let sample = self.measure(bodies, index, direction);
-                let gap = if is_bilateral { sample.gap } else { sample.gap.max(0.0) };
-                let offset = gap / span + 0.5 * span * sample.kinematics.gamma;
-                let mut row = Row {
-                    places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
-                    third,
-                    is_bilateral,
-                    presses: tie.presses,
-                    touches: is_bilateral || tie.presses || sample.gap <= slack,
-                    roll: None,
-                    normal: Line::new(sample.kinematics.jacobian, inertia, offset).with_square(square),
-                    slip: Slip::default(),
-                    gap: sample.gap,
-                    gamma: sample.kinematics.gamma,
-                    elasticity: connector.elasticity,
-                    strikes: tie.arrival,
-                    blows: [0.0; 2],
-                    arrives: None,
-                    point: sample.point_a,
-                    source: Source::Connector { connector: index as u32, direction: direction as u32 },
-                };
-                row.normal.impulse = span * tie.forces[direction];
-                rows.push(row);
+                rows.push(self.row(bodies, (index, direction), lengths));
             }
         }
     }
+
+    /// The row of a direction of a connector.
+    fn row(&self, bodies: &Bodies, (index, direction): (usize, usize), lengths: Lengths) -> Row {
+        let Lengths { span, time, slack, .. } = lengths;
+        let (connector, tie) = (&self.all[index], &self.memory[index]);
+        let sample = self.measure(bodies, (index, direction), time);
+        let (is_bilateral, pulls) = (connector.is_bilateral(), connector.is_pull());
+        let (now, end) = (connector.prescribed(time), connector.prescribed(time + span));
+        // A drive is to be where its law is at the end of the step; what pulls is to have its rate, from wherever it is.
+        let offset = match pulls {
+            true => now.rate,
+            false if is_bilateral => (sample.gap + (end.value - now.value)) / span,
+            false => sample.gap.max(0.0) / span,
+        };
+        let gamma = sample.kinematics.gamma;
+        let offset = offset + 0.5 * span * (gamma - now.acceleration);
+        let ids = connector.bodies();
+        let inertia = ids.map(|body| bodies.inertia_in_step(body.index()));
+        let mut normal = Line::new(sample.kinematics.jacobian, inertia, offset);
+        let apart = apart(connector, sample.kinematics.jacobian, span);
+        if let Some(apart) = &apart {
+            let inverse_moment = |place| bodies.inertia_in_step(place as usize).inverse_moment;
+            normal = normal.with_compliance(apart.compliance(&normal, inertia, inverse_moment));
+        }
+        normal.impulse = span * tie.forces[direction];
+        let mut row = Row {
+            places: ids.map(|body| if body.is_world() { bodies.count() as u32 } else { body.0 }),
+            apart,
+            is_bilateral,
+            prescribed: (connector.is_driven() || pulls && now.rate != 0.0).then_some(now.rate),
+            presses: tie.presses,
+            touches: is_bilateral || pulls || tie.presses || sample.gap <= slack,
+            roll: None,
+            normal,
+            slip: Slip::default(),
+            // What pulls has no place to keep.
+            gap: if pulls { f64::INFINITY } else { sample.gap },
+            gamma,
+            elasticity: connector.elasticity,
+            strikes: tie.arrival,
+            blows: [0.0; 2],
+            arrives: None,
+            point: sample.point_a,
+            source: Source::Connector { connector: index as u32, direction: direction as u32 },
+        };
+        row.meet(sample.kinematics.rate);
+        row
+    }
+}
+
+/// What the row of a connector has beyond its line in a step of a length `span` [s].
+fn apart(connector: &Connector, [x, y, _, u, v, _]: [f64; 6], span: f64) -> Option<Apart> {
+    let third = connector.third().map(|(body, arm)| Third { place: body.0, arm });
+    let is_apart = third.is_some() || connector.is_pull() || [u, v] != [-x, -y];
+    is_apart.then(|| Apart { second: [u, v], third, most: span * connector.most_force() })
 }

@@ -39,6 +39,7 @@ pub use row::ConnectorSample;
 
 use crate::body::BodyId;
 use crate::motion::BodyState;
+use crate::motion_law::MotionMoment;
 use glam::DVec2;
 use halfgap_geometry::Pose;
 use std::sync::Arc;
@@ -211,14 +212,41 @@ impl Connector {
         matches!(self.kind, ConnectorKind::Drive { .. })
     }
 
+    /// What is prescribed of a connector's row at a time [s]: the parts of its gap [m], rate [m/s] and acceleration [m/s^2] that it has
+    /// without any motion of its bodies. A drive counts from its law's zero; nothing of a gap is prescribed to what pulls.
+    #[must_use]
+    #[inline]
+    pub fn prescribed(&self, time: f64) -> MotionMoment {
+        match &self.kind {
+            ConnectorKind::Drive { coordinate, law, .. } => {
+                let (scale, MotionMoment { value, rate, acceleration }) = (coordinate.scale(), law.at(time));
+                MotionMoment {
+                    value: -scale * value,
+                    rate: -scale * rate,
+                    acceleration: -scale * acceleration,
+                }
+            }
+            ConnectorKind::Pull { coordinate, speed, .. } => {
+                MotionMoment { rate: -coordinate.scale() * speed, ..MotionMoment::default() }
+            }
+            _ => MotionMoment::default(),
+        }
+    }
+
     /// The part [m/s] of the rate of a connector's row that is prescribed at a time [s]: the rate without any motion of its bodies.
     #[must_use]
     #[inline]
     pub fn prescribed_rate(&self, time: f64) -> f64 {
+        self.prescribed(time).rate
+    }
+
+    /// Largest size of the force [N] along the row: infinite but for what pulls.
+    #[must_use]
+    #[inline]
+    pub fn most_force(&self) -> f64 {
         match &self.kind {
-            ConnectorKind::Drive { coordinate, law, .. } => -coordinate.scale() * law.at(time).rate,
-            ConnectorKind::Pull { coordinate, speed, .. } => -coordinate.scale() * speed,
-            _ => 0.0,
+            ConnectorKind::Pull { coordinate, most, .. } => most / coordinate.scale(),
+            _ => f64::INFINITY,
         }
     }
 

@@ -214,7 +214,6 @@ fn located(error: WorldError, scene: &Scene) -> SceneError {
         | WorldError::CannotConnect { connector, .. }
         | WorldError::BadConnector { connector, .. }
         | WorldError::FarConnector { connector, .. }
-        | WorldError::NeedsEvents { connector, .. }
         | WorldError::ConnectorComesApart { connector, .. } => {
             let ConnectorName { index, kind, .. } = connector;
             let element = top.field("connector").element(*index);

@@ -1,7 +1,6 @@
 //! Checks of the input of a world: names, numbers out of range, unknown bodies, coordinates that are too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
-use crate::connector::{ConnectorSpec, OnCoordinate};
 use crate::settings::{AdvanceBy, Stabilization, ToleranceOverrides};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};
@@ -51,11 +50,6 @@ impl WorldBuilder {
             let bad = |source| WorldError::BadConnector { connector: self.connector_name(index), source };
             spec.connector.check().map_err(bad)?;
             self.require_near(index, &spec.connector, LARGEST)?;
-            if let Some(what) = needs_events(spec)
-                && self.settings.strategy != AdvanceBy::Events
-            {
-                return Err(WorldError::NeedsEvents { connector: self.connector_name(index), what });
-            }
         }
         self.check_stops()?;
         self.check_contradictions()?;
@@ -255,19 +249,6 @@ fn check_flight(body: &BodySpec, law: &FreeMotion) -> Result<(), WorldError> {
         }
     }
     Ok(())
-}
-
-/// What only an advance by events simulates so far.
-fn needs_events(spec: &ConnectorSpec) -> Option<&'static str> {
-    let OnCoordinate { motor, friction, drive, .. } = &spec.on_coordinate;
-    match spec.connector.kind {
-        ConnectorKind::Rack { .. } => Some("racks"),
-        ConnectorKind::Pulley { .. } => Some("pulleys"),
-        _ if drive.is_some() => Some("drives"),
-        _ if motor.is_some() => Some("motors"),
-        _ if friction.is_some() => Some("dry friction in joints"),
-        _ => None,
-    }
 }
 
 /// Size of the largest coordinate of a connector [m], on a body or in the world.
