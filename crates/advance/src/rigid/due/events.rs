@@ -106,18 +106,6 @@ fn handle_group_with(rooms: &mut Rooms, leader: BodyId, work: &mut EventWork) ->
     let Some(group) = group_of(&rooms.assembly, &rooms.groups, leader) else { return Ok(()) };
     work.seed(group.bodies().iter().copied());
     let Some((_, end)) = group.event() else { return Ok(()) };
-    if std::env::var("TRACE").is_ok() {
-        eprintln!(
-            "{:.15} {:?} span {:e} rows {:?} f {:?} pulls {:?} stops {:?}",
-            rooms.assembly.now().seconds(),
-            end,
-            group.span(),
-            group.rows().iter().map(|r| r.source).collect::<Vec<_>>(),
-            group.end_forces(),
-            group.pulls(),
-            group.stops()
-        );
-    }
     match end {
         SegmentEnd::Release(row) => {
             work.region.set_strained(group.shares_forces());
