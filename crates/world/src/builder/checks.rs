@@ -1,6 +1,7 @@
 //! Checks of the input of a world: names, numbers out of range, unknown bodies, coordinates that are too large.
 
 use super::{BodySpec, WorldBuilder, centered, largest_radius};
+use crate::connector::ConnectorSpec;
 use crate::settings::{AdvanceBy, Stabilization, ToleranceOverrides};
 use crate::world::{BACKGROUND, Inertia};
 use crate::world_error::{ConnectorName, WorldError};

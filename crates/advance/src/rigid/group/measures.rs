@@ -111,13 +111,23 @@ impl Dynamics<'_> {
     /// A speed [m/s] of the group in a state, as [`Self::speed`] defines it.
     pub(crate) fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
         let forced = (self.group.free_acceleration * self.length(control)).sqrt();
-        let speed = forced.max(self.top_speed(state));
+        let speed = forced.max(self.top_speed(state)).max(self.moved_speed());
         if speed > STANDSTILL * control.speed { speed } else { control.speed }
     }
 
     /// Speed [m/s] of the fastest point of the group in a state.
     pub(super) fn top_speed(&self, state: &[f64]) -> f64 {
         self.speeds(state, DVec2::ZERO).fold(0.0, f64::max)
+    }
+
+    /// Speed [m/s] of the fastest point of the bodies that are moved beside the group: what is at rest takes it from them.
+    fn moved_speed(&self) -> f64 {
+        let speeds = self.group.moved.iter().map(|body| {
+            let trajectory = &self.physics.mechanism.trajectories[body.index()];
+            let moving = trajectory.moving_at(self.start);
+            trajectory.fastest_point([moving.velocity.x, moving.velocity.y, moving.angular_velocity])
+        });
+        speeds.fold(0.0, f64::max)
     }
 
     /// True if a body of the group moves no faster than a contact closes that counts as slow.

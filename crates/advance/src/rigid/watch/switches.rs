@@ -1,5 +1,6 @@
 //! Early ends of a group's segment that no active row shows: a stop that closes, a force law that changes branch.
 
+use crate::ode::Spread;
 use crate::rigid::connectors::store::Stop;
 use crate::rigid::contacts::rows::moving_of;
 use crate::rigid::group::dynamics::Dynamics;
@@ -8,6 +9,7 @@ use crate::rigid::group::state::SegmentEnd;
 use crate::rigid::shares::HALVINGS;
 use crate::rigid::watch::crossing::{between_nodes, first_fall, node};
 use crate::rigid::watch::earliest::Earliest;
+use halfgap_collision::{ConnectorKind, Coordinate};
 
 /// Factor by which the search for a stop that is touched is shortened, until its point is off it at the first node.
 const SHORTER: f64 = 0.25;
@@ -24,6 +26,9 @@ const LOOK_AHEAD: f64 = 1.0 / 1024.0;
 /// the start: the search then covers so short a part of the segment that the point is off the stop. On a closed
 /// rail a point that has gone by a stop seems to have come round: laps are told apart by the value read before.
 pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> {
+    if stays_off(dynamics, stop) {
+        return None;
+    }
     let lap = lap_of(dynamics, stop);
     let mut reach = dynamics.group.span();
     for _ in 0..HALVINGS {
@@ -38,6 +43,30 @@ pub(crate) fn find_stop(dynamics: &mut Dynamics<'_>, stop: Stop) -> Option<f64> 
         reach *= SHORTER;
     }
     Some(reach)
+}
+
+/// True for the limit of an angle that is farther off than its bodies turn along the segment.
+fn stays_off(dynamics: &mut Dynamics<'_>, stop: Stop) -> bool {
+    let connector = &dynamics.physics.mechanism.connectors[stop.id.index()];
+    let ConnectorKind::Limit { coordinate: Coordinate::Angle { a, b, lever }, .. } = connector.kind else {
+        return false;
+    };
+    let turns = [a, b].map(|body| match dynamics.group.bodies().binary_search(&body) {
+        Ok(place) => {
+            let angle = &dynamics.group.paths()[place][2];
+            let Spread { center, radius } = angle.value_spread();
+            radius + (center - angle.value_at(0.0)).abs()
+        }
+        Err(_) => {
+            let trajectory = dynamics.physics.mechanism.trajectories.get(body.index());
+            if trajectory.is_some_and(|trajectory| trajectory.moved().is_some()) {
+                f64::INFINITY
+            } else {
+                0.0
+            }
+        }
+    });
+    stop_at(dynamics, stop, 0.0) > lever * (turns[0] + turns[1])
 }
 
 /// Offset [s] at which the point of a stop on a closed rail passes it from behind, where it does not hold the
