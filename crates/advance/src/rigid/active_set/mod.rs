@@ -7,12 +7,13 @@
 //! `choosing`: which candidates become active, and at which gap · `hops`: contacts that open and close again at once · `jammed`:
 //! forces of rows that work against each other · `leverless`, `levers`: contacts that act by next to no lever · `dependent`,
 //! `redundant`: candidates that depend on others · `leaving`: contacts that end at once · `slips`: who slips and who
-//! sticks · `pulls`: which motors and joints with dry friction hold · `refining`: their
-//! accelerations to all digits · `responses`: what forces do to bodies · `jump`: what follows where slips have no forces · `painleve`: what there is to tell of that.
+//! sticks · `pulls`: which motors and joints with dry friction hold · `holding`: the rows that
+//! hold beside them · `responses`: what forces do to bodies · `jump`: what follows where slips have no forces · `painleve`: what there is to tell of that.
 
 pub(super) mod choosing;
 pub(super) mod dependent;
 pub(super) mod exclusion;
+mod holding;
 pub(super) mod hops;
 pub(super) mod jammed;
 pub(super) mod jump;
@@ -23,7 +24,6 @@ pub(super) mod painleve;
 pub(super) mod posing;
 pub(super) mod pulls;
 pub(super) mod redundant;
-mod refining;
 pub(super) mod relaxing;
 mod responses;
 pub(super) mod settle;

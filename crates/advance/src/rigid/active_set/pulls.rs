@@ -3,7 +3,7 @@
 //! One whose rate is off acts with all its force. One at its speed has a row in the problem, bounded by a constant; where the bound is
 //! reached it acts with all its force from then on. Those that act so are rows, too, whose bounds are one and the same force.
 
-use crate::rigid::active_set::refining::{list_holding, refine_pulls};
+use crate::rigid::active_set::holding::{refine_pulls, take_redundant};
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::active_set::slips::{MOVES, NARROWED};
 use crate::rigid::bodies::assembly::Assembly;
@@ -71,7 +71,6 @@ fn find_giving(assembly: &Assembly, region: &Region, settling: &mut Settling) ->
     if giving.is_empty() {
         return giving;
     }
-    list_holding(assembly, region, settling);
     refine_pulls(assembly, region, settling);
     give_way(settling)
 }
@@ -123,20 +122,40 @@ pub(super) fn all_hold(assembly: &Assembly, region: &Region, settling: &mut Sett
     find_giving(assembly, region, settling).is_empty()
 }
 
-/// Sorts those that hold from those that act with all their force.
-pub(super) fn choose_pulls(settling: &mut Settling) {
-    let Settling { pulls, given_up, solution, held, pulled, .. } = settling;
-    held.clear();
-    pulled.clear();
-    for &Pulling { id, bodies, row, most, side, number } in &*pulls {
-        let given = given_up.iter().find(|(other, _)| *other == id).map(|&(_, side)| side);
-        if let Some(side) = side.or(given) {
-            let left = if given.is_some() { row.kinematics.rate } else { 0.0 };
-            pulled.push(Pull { id, bodies, force: -side * most, left });
-            continue;
+/// Sorts those that hold from those that act with all their force. Of several that hold one motion, those nearest to their bounds go on with
+/// the force that they have: forces that are not unique would be others in a group, and beyond bounds.
+pub(super) fn choose_pulls(assembly: &Assembly, region: &Region, settling: &mut Settling) {
+    settling.held.clear();
+    settling.pulled.clear();
+    let force_of = |settling: &Settling, pull: &Pulling| {
+        pull.number.and_then(|number| settling.solution.force.get(number)).copied().unwrap_or(0.0)
+    };
+    let mut holding = Vec::new();
+    for (index, pull) in settling.pulls.iter().enumerate() {
+        let given = settling.given_up.iter().find(|(other, _)| *other == pull.id).map(|&(_, side)| side);
+        match pull.side.or(given) {
+            Some(side) => {
+                let left = if given.is_some() { pull.row.kinematics.rate } else { 0.0 };
+                let (id, bodies, force) = (pull.id, pull.bodies, -side * pull.most);
+                settling.pulled.push(Pull { id, bodies, force, left: Some(left) });
+            }
+            None => holding.push(index),
         }
-        let force = number.and_then(|number| solution.force.get(number)).copied().unwrap_or(0.0);
-        held.push(ActiveRow {
+    }
+    let room =
+        |index: usize| 1.0 - force_of(settling, &settling.pulls[index]).abs() / settling.pulls[index].most;
+    holding.sort_by(|&a, &b| room(b).total_cmp(&room(a)));
+    let redundant = take_redundant(assembly, region, settling, &mut holding);
+    for index in redundant {
+        let pull = settling.pulls[index];
+        let force = force_of(settling, &pull);
+        settling.pulled.push(Pull { id: pull.id, bodies: pull.bodies, force, left: None });
+    }
+    holding.sort_unstable();
+    for index in holding {
+        let Pulling { id, bodies, row, most, .. } = settling.pulls[index];
+        let force = force_of(settling, &settling.pulls[index]);
+        settling.held.push(ActiveRow {
             source: RowSource::Pull(id),
             bodies,
             third: None,

@@ -93,7 +93,7 @@ pub(crate) fn settle(
         solved = solve_giving_way(view, region, settling, stage, (time, rest))?;
     }
     if solved == Solved::Nothing {
-        choose_pulls(settling);
+        choose_pulls(view.assembly, region, settling);
         return Ok(());
     }
     note_undecided(view.assembly, region, settling);
@@ -112,7 +112,7 @@ pub(crate) fn settle(
         pose_problem(view.assembly, view.connectors, region, settling, stage);
         exclude_dependent(view.assembly, region, settling, stage);
     }
-    choose_pulls(settling);
+    choose_pulls(view.assembly, region, settling);
     choose_rows(view.assembly, view.connectors, view.pairs, region, settling, time);
     view.assembly.refuse_squeezed(
         settling.active.iter().map(|(_, row)| row.bodies),

@@ -7,7 +7,7 @@ use crate::rigid::contacts::rows::{ActiveRow, Mechanism, RowMoment};
 use glam::DVec2;
 use halfgap_collision::{BodyId, ConnectorId, GapKinematics, Moving};
 
-/// A motor, or dry friction in a joint, that acts with all its force.
+/// A motor, or dry friction in a joint, that acts with a given force: all that it has, or its share of what holds.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pull {
@@ -15,8 +15,9 @@ pub(crate) struct Pull {
     pub(crate) bodies: [BodyId; 2],
     /// Force [N] along its row, against the side to which the rate is off.
     pub(crate) force: f64,
-    /// Rate [m/s] that the event has left, by rounding, where it sets out from its speed.
-    pub(crate) left: f64,
+    /// Rate [m/s] that the event has left, by rounding, where it sets out from its speed; `None` for one that holds what others hold,
+    /// too, by the share of the force that the event gave it.
+    pub(crate) left: Option<f64>,
 }
 
 impl Mechanism<'_> {

@@ -15,6 +15,7 @@ impl Dynamics<'_> {
         self.group.rows.iter().find_map(|row| {
             let RowSource::Connector(id, _) = row.source else { return None };
             let connector = &self.physics.mechanism.connectors[id.index()];
+            connector.wheels()?;
             let sides = |state| {
                 connector.sides([&self.pose_in(state, row.bodies[0]), &self.pose_in(state, row.bodies[1])])
             };

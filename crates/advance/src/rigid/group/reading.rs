@@ -134,6 +134,7 @@ impl Group {
     /// True if forces of its rows are not unique, and shared as the event found them.
     pub(crate) fn shares_forces(&self) -> bool {
         !(self.spares.is_empty() && self.prescribed.is_empty())
+            || self.pulls.iter().any(|pull| pull.left.is_none())
     }
 
     /// Number of spare anchors, which come first among the spare rows.

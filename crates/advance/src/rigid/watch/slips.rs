@@ -77,10 +77,11 @@ pub(super) fn find_pull_stop(dynamics: &mut Dynamics<'_>, earliest: &mut Earlies
     dynamics.stage.take_back_force_samples(samples);
 }
 
-/// Rate [m/s] that is left for a pull to take, with the bodies in place.
+/// Rate [m/s] that is left for a pull to take, with the bodies in place; infinite for one that holds.
 fn pull_at(dynamics: &Dynamics<'_>, pull: usize) -> f64 {
     let pull = &dynamics.group.pulls()[pull];
+    let Some(left) = pull.left else { return f64::INFINITY };
     let movings = pull.bodies.map(|body| moving_of(dynamics.stage.movings(), body));
-    let rate = dynamics.physics.mechanism.pull_kinematics(pull.id, movings).rate - pull.left;
+    let rate = dynamics.physics.mechanism.pull_kinematics(pull.id, movings).rate - left;
     if pull.force > 0.0 { -rate } else { rate }
 }
