@@ -5,7 +5,7 @@
 
 use crate::rigid::active_set::holding::{refine_pulls, take_redundant};
 use crate::rigid::active_set::settling::Settling;
-use crate::rigid::active_set::slips::{MOVES, NARROWED};
+use crate::rigid::active_set::slips::{MOVES, NARROWED, mobility};
 use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::friction::Grip;
@@ -26,6 +26,8 @@ pub(crate) struct Pulling {
     pub(super) row: ConnectorSample,
     /// Largest force along its row [N].
     most: f64,
+    /// Acceleration along its row by a unit of force along it [1/kg].
+    mobility: f64,
     /// The side to which its rate is off, 1 or -1; `None` for one that may hold.
     side: Option<f64>,
     /// Number of its row in the problem, if it has one.
@@ -63,7 +65,9 @@ impl Pulling {
 fn find_giving(assembly: &Assembly, region: &Region, settling: &mut Settling) -> Vec<(ConnectorId, f64)> {
     let give_way = |settling: &Settling| -> Vec<_> {
         let Settling { pulls, solution, problem, slack, .. } = settling;
-        let largest = problem.offset().iter().fold(0.0f64, |most, b| most.max(b.abs()));
+        let of_loads = problem.offset().iter().map(|b| b.abs());
+        let of_pulls = pulls.iter().map(|pull| pull.most * pull.mobility);
+        let largest = of_loads.chain(of_pulls).fold(0.0f64, f64::max);
         let giving = |pull: &Pulling| Some((pull.id, pull.gives_way(solution, (MOVES * largest, *slack))?));
         pulls.iter().filter_map(giving).collect()
     };
@@ -104,7 +108,8 @@ pub(super) fn list_pulls(
             let given = settling.given_up.iter().find(|(other, _)| *other == id).map(|&(_, side)| side);
             let side = given.or_else(|| (rate.abs() > rest).then(|| rate.signum()));
             let most = most / coordinate.scale();
-            settling.pulls.push(Pulling { id, bodies, row, most, side, number: None });
+            let mobility = mobility(assembly, bodies, &row.kinematics.jacobian);
+            settling.pulls.push(Pulling { id, bodies, row, most, mobility, side, number: None });
         }
     }
 }

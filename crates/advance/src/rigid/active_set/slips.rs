@@ -99,7 +99,7 @@ pub(super) fn list_slips(
         slips.extend(Axis::ALL.into_iter().filter_map(|axis| {
             let resistance = resistance_of(assembly, connectors, &region.records()[record], axis)?;
             let (row, [kinetic, sticking]) = resistance;
-            let mobility = mobility(assembly, &region.records()[record], &row);
+            let mobility = mobility(assembly, region.records()[record].bodies(), &row.jacobian);
             let given = side_given(given_way, record, axis);
             let side = given.or_else(|| (row.rate.abs() > rest).then(|| row.rate.signum()));
             let side = side.filter(|_| !*jumps);
@@ -123,14 +123,14 @@ fn resistance_of(
     }
 }
 
-/// Acceleration along a row between the bodies of a record by a unit of force along it [1/kg].
-fn mobility(assembly: &Assembly, record: &Collision, row: &TangentRow) -> f64 {
+/// Acceleration along a row between two bodies by a unit of force along it [1/kg].
+pub(super) fn mobility(assembly: &Assembly, bodies: [BodyId; 2], jacobian: &[f64; 6]) -> f64 {
     let of_side = |(side, body): (usize, BodyId)| {
         let InverseInertia { inverse_mass, inverse_moment } = assembly.inertia(body);
-        let [x, y, turning] = [0, 1, 2].map(|k: usize| row.jacobian[3 * side + k]);
+        let [x, y, turning] = [0, 1, 2].map(|k: usize| jacobian[3 * side + k]);
         inverse_mass * (x * x + y * y) + inverse_moment * turning * turning
     };
-    record.bodies().into_iter().enumerate().map(of_side).sum()
+    bodies.into_iter().enumerate().map(of_side).sum()
 }
 
 /// The side to which a record's contact has begun to slip along an axis in this event, if it has.
