@@ -86,6 +86,12 @@ impl ActiveRow {
         }
     }
 
+    /// True for a motor, or dry friction in a joint, that holds.
+    #[inline]
+    pub(crate) fn is_pull(&self) -> bool {
+        matches!(self.grips[0], Grip::Bounded { .. })
+    }
+
     /// The anchors by which a contact is kept, each with the coefficient [-] up to which it is.
     #[inline]
     pub(crate) fn kept_by(&self) -> impl Iterator<Item = (usize, f64)> + use<> {

@@ -1,5 +1,6 @@
 //! Margins of a group's rows: how much force each may lose before an event. A contact's is its force; an anchor's is what the
-//! contacts that it keeps may bear along its axis, less its force.
+//! contacts that it keeps may bear along its axis, less its force. That of a motor counts the square of its force, which has no corner
+//! where the force changes its side: searches follow quartics.
 
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::state::Group;
@@ -11,6 +12,7 @@ pub(super) fn list_margins(group: &Group, forces: &[f64], least: &[f64], margins
     margins.clear();
     margins.extend(rows.iter().zip(forces).zip(least).map(
         |((row, force), least)| match row.anchor_bound() {
+            Some(most) if row.is_pull() && most > 0.0 => least + (most - force * (force / most)) / 2.0,
             Some(bound) => least + bound - force.abs(),
             None if row.bilateral => f64::INFINITY,
             None => force + least,
