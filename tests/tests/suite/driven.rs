@@ -162,7 +162,10 @@ fn what_a_drive_or_a_pulley_cannot_do_is_told_by_name() {
         let error = world.advance_to(100.0, &mut |_| ()).expect_err("it cannot go on");
         told += &format!("{error}\n");
     }
-    insta::assert_snapshot!(told, @"");
+    insta::assert_snapshot!(told, @r#"
+    at 0.6630115 s connector "hinge" (drive of "world" and "rocker") comes to a dead point of the linkage, beyond which it cannot move it; let it turn less far, or use a motor, whose `max` lets it stop
+    at 0.5530013 s connector "rope" (pulley of "light" and "heavy") has run out: "light" is at the wheel; end the run before, or stop "light" short of it
+    "#);
 }
 
 #[test]

@@ -111,7 +111,7 @@ impl Dynamics<'_> {
     /// A speed [m/s] of the group in a state, as [`Self::speed`] defines it.
     pub(crate) fn speed_in(&self, state: &[f64], control: &StepControl) -> f64 {
         let forced = (self.group.free_acceleration * self.length(control)).sqrt();
-        let speed = forced.max(self.top_speed(state)).max(self.moved_speed());
+        let speed = forced.max(self.top_speed(state)).max(self.moved_speed(control));
         if speed > STANDSTILL * control.speed { speed } else { control.speed }
     }
 
@@ -120,12 +120,17 @@ impl Dynamics<'_> {
         self.speeds(state, DVec2::ZERO).fold(0.0, f64::max)
     }
 
-    /// Speed [m/s] of the fastest point of the bodies that are moved beside the group: what is at rest takes it from them.
-    fn moved_speed(&self) -> f64 {
+    /// Speed [m/s] of the bodies that are moved beside the group, of their fastest point or as they gather it over the length of the
+    /// group: what is at rest takes it from them.
+    fn moved_speed(&self, control: &StepControl) -> f64 {
         let speeds = self.group.moved.iter().map(|body| {
             let trajectory = &self.physics.mechanism.trajectories[body.index()];
             let moving = trajectory.moving_at(self.start);
-            trajectory.fastest_point([moving.velocity.x, moving.velocity.y, moving.angular_velocity])
+            let speed = [moving.velocity.x, moving.velocity.y, moving.angular_velocity];
+            let gathered = trajectory.prescribed_acceleration(self.start);
+            let gathered = [gathered.linear.x, gathered.linear.y, gathered.angular];
+            let gathered = (trajectory.fastest_point(gathered) * self.length(control)).sqrt();
+            trajectory.fastest_point(speed).max(gathered)
         });
         speeds.fold(0.0, f64::max)
     }
@@ -188,8 +193,9 @@ impl Dynamics<'_> {
     /// Writes the errors of positions and velocities that are just acceptable, one for each component.
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
-        // What friction and damping take adds up over a run, and so do errors of it.
-        let share = self.depth_share(control) * if self.group.loses_energy() { MINOR } else { 1.0 };
+        // What friction and damping take adds up over a run, and so do errors of it. Implicit steps, of a lower order, would be many more.
+        let adds_up = self.group.loses_energy() && !self.group.stiffness.is_stiff;
+        let share = self.depth_share(control) * if adds_up { MINOR } else { 1.0 };
         let least = self.least_errors(share, speed);
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);
         let clearance = any_contact.then_some(HALF_ZONE * self.physics.mechanism.tolerances.accuracy);
