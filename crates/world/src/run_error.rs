@@ -132,7 +132,7 @@ pub enum RunError {
         /// Time of the error [s].
         time: f64,
         /// The drive.
-        connector: ConnectorName,
+        connector: Box<ConnectorName>,
     },
     /// A rope over pulleys has been pulled in on one side.
     #[error(
@@ -143,7 +143,7 @@ pub enum RunError {
         /// Time of the error [s].
         time: f64,
         /// The pulley.
-        connector: ConnectorName,
+        connector: Box<ConnectorName>,
         /// Name of the body at the end of the side that ran out.
         body: String,
     },
@@ -355,7 +355,7 @@ impl RunError {
 
     pub(crate) fn new(error: AdvanceError, bodies: &[Named], joints: &Joints) -> Self {
         let name = |body: BodyId| name_among(bodies, body).to_owned();
-        let connector = |id: ConnectorId| joints.name(id, bodies);
+        let connector = |id: ConnectorId| Box::new(joints.name(id, bodies));
         let names = |between: Between| (name(between.primary), name(between.normal));
         match error {
             AdvanceError::Impact { time, bodies, between, source } => {

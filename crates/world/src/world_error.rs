@@ -253,7 +253,7 @@ pub struct ConnectorName {
     #[cfg_attr(feature = "save", serde(with = "crate::saving::kind"))]
     pub kind: KindName,
     /// Its own name, if it has one.
-    pub name: Option<String>,
+    pub name: Option<Box<str>>,
     /// Name of body a.
     pub first: String,
     /// Name of body b.
@@ -268,7 +268,7 @@ impl ConnectorName {
         name_of: impl Fn(BodyId) -> Option<&'a str>,
     ) -> Self {
         let [first, second] = connector.bodies().map(|body| name_of(body).unwrap_or(BACKGROUND).to_owned());
-        Self { index, kind: kind_name(&connector.kind), name: name.map(str::to_owned), first, second }
+        Self { index, kind: kind_name(&connector.kind), name: name.map(Box::from), first, second }
     }
 }
 
