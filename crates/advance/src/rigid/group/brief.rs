@@ -42,7 +42,7 @@ impl Group {
     pub(crate) fn stepping(&self) -> Stepping {
         if self.is_brief {
             Stepping::Brief
-        } else if self.stiffness.is_stiff {
+        } else if self.stiffness.is_stiff && !self.is_determined() {
             Stepping::Stiff
         } else if self.has_kinks {
             Stepping::Brief

@@ -4,6 +4,7 @@ use crate::ode::{Method, Stepper};
 use crate::rigid::group::dynamics::Dynamics;
 use crate::rigid::group::stage::body_state;
 use crate::rigid::group::state::Group;
+use crate::rigid::group::stepping::Stepping;
 use crate::rigid::group::tools::Tools;
 use crate::rigid::settings::StepControl;
 use crate::rigid::shares::{HALF_ZONE, LARGE, MINOR, WAY_OF_A_STEP};
@@ -194,7 +195,7 @@ impl Dynamics<'_> {
     fn set_scales(&self, control: &StepControl, scales: &mut Vec<f64>) {
         let (length, speed) = (self.length(control), self.speed(control));
         // What friction and damping take adds up over a run, and so do errors of it. Implicit steps, of a lower order, would be many more.
-        let adds_up = self.group.loses_energy() && !self.group.stiffness.is_stiff;
+        let adds_up = self.group.loses_energy() && self.group.stepping() != Stepping::Stiff;
         let share = self.depth_share(control) * if adds_up { MINOR } else { 1.0 };
         let least = self.least_errors(share, speed);
         let any_contact = self.group.rows.iter().any(|row| !row.bilateral);

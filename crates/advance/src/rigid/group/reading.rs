@@ -195,6 +195,12 @@ impl Group {
         self.works.iter().any(|work| matches!(work, Work::Damping | Work::Friction(_) | Work::Rubbing))
     }
 
+    /// True if it has no freedom left, as where a drive moves a linkage: it has no rates of its own then, and what is told of them is
+    /// rounding.
+    pub(crate) fn is_determined(&self) -> bool {
+        self.rows.len() >= 3 * self.bodies.len() + self.dependent
+    }
+
     /// A drive among its rows.
     pub(crate) fn drive(&self, connectors: &Connectors) -> Option<ConnectorId> {
         self.rows.iter().find_map(|row| match row.source {

@@ -44,10 +44,7 @@ impl Dynamics<'_> {
     /// Estimates the fastest rate of the group from the last step, with the rates at its end; `None` if no estimate is
     /// due.
     pub(crate) fn tell_stiffness(&mut self, tools: &mut Tools<'_>) -> Option<StiffnessEstimate> {
-        let Group { bodies, rows, dependent, .. } = &*self.group;
-        // What has no freedom left, as where a drive moves a linkage, has no rates of its own: they would be told from rounding.
-        let is_determined = rows.len() >= 3 * bodies.len() + dependent;
-        if !tools.settings.method.is_adaptive() || self.group.is_brief || is_determined {
+        if !tools.settings.method.is_adaptive() || self.group.is_brief || self.group.is_determined() {
             return None;
         }
         let Stiffness { wait, looked, rate, .. } = self.group.stiffness;
