@@ -6,6 +6,35 @@ use proptest::prelude::*;
 
 const INERTIA: InverseInertia = InverseInertia { inverse_mass: 0.8, inverse_moment: 3.0 };
 
+/// What an independent row may leave of its acceleration [m/s^2], per newton of the largest force.
+const HELD: f64 = 1e-11;
+/// What a dependent row may leave of it [m/s^2], per newton of the largest force: rows whose remainder is up to the root of
+/// the threshold count as dependent.
+const FOLLOWS: f64 = 1e-4;
+/// Rounding of a response [m/s^2, rad/s^2], per newton of the largest force.
+const RESPONSE: f64 = 1e-12;
+/// Rounding of accelerations [m/s^2, rad/s^2] of the order of gravity, under soft rows.
+const ROUNDED: f64 = 1e-12;
+/// Rounding of a response to gears [rad/s^2], of the order of 1.
+const GEARED: f64 = 1e-14;
+/// Rounding of what soft gears leave of an acceleration of 1 rad/s^2 [rad/s^2].
+const SOFTLY_GEARED: f64 = 1e-13;
+/// Rounding of a force of 1 N on a row by itself [N].
+const ONE_FORCE: f64 = 1e-15;
+/// Rounding of a force of 0 [N] beside forces of some newtons.
+const NO_FORCE: f64 = 1e-12;
+/// Difference [N] by which soft rows miss the sharing of forces of some newtons.
+const SHARED: f64 = 1e-4;
+/// The same of two rows that are one and the same [N].
+const SHARED_BY_TWINS: f64 = 1e-6;
+/// A disagreement of rows [m/s^2], and what it may move [m/s^2].
+const DISAGREEMENT: f64 = 1e-9;
+const MOVED_BY_DISAGREEMENT: f64 = 1e-8;
+/// Inverse mass [1/kg] and inverse moment of inertia [1/(kg m^2)] of a body of 100 t.
+const OF_HEAVY: f64 = 1e-5;
+/// What forces of 4e5 N on a body of a gram may leave of an acceleration [m/s^2].
+const LEFT_OF_LARGE: f64 = 1e-6;
+
 /// M⁻¹ Jᵀ f and A f, computed the plain way.
 fn accelerations(
     inertia: &[InverseInertia],
@@ -64,8 +93,7 @@ fn check_with_thirds(
     let (expected, rates) = accelerations_with_thirds(inertia, (rows, thirds), jacobians, &force);
     let largest = force.iter().fold(1.0f64, |m, f| m.max(f.abs()));
     for row in 0..rows.len() {
-        // Rows whose remainder is up to the root of the threshold count as dependent.
-        let rounding = if active.is_dependent(row) { 1e-4 } else { 1e-11 };
+        let rounding = if active.is_dependent(row) { FOLLOWS } else { HELD };
         let left = rates[row] + offset[row];
         assert!(left.abs() <= rounding * largest, "row {row} of {}: {left}, forces {largest}", rows.len());
         assert!(!active.is_dependent(row) || force[row] == 0.0);
@@ -74,7 +102,7 @@ fn check_with_thirds(
     let mut change = vec![[0.0; 3]; inertia.len()];
     active.respond(&force, &mut change);
     for (p, q) in change.iter().zip(&expected) {
-        assert!((0..3).all(|k| (p[k] - q[k]).abs() <= 1e-12 * largest));
+        assert!((0..3).all(|k| (p[k] - q[k]).abs() <= RESPONSE * largest));
     }
     dependent
 }
@@ -96,7 +124,7 @@ fn soft_rows_hold_as_much_and_share_it() {
     let mut force = [f64::NAN; 6];
     active.solve(&gravity, &mut force);
     let (change, _) = accelerations(&[INERTIA], &sides, &jacobians, &force);
-    assert!((change[0][1] - 10.0).abs() < 1e-12 && change[0][2].abs() < 1e-12, "{change:?}");
+    assert!((change[0][1] - 10.0).abs() < ROUNDED && change[0][2].abs() < ROUNDED, "{change:?}");
     // The least forces, each weighed by its row's square, that carry 12.5 N without a torque: (p + q arm)/square.
     let square = |arm: f64| INERTIA.inverse_mass + INERTIA.inverse_moment * arm * arm;
     let sum = |power: i32| arms.iter().map(|&arm| arm.powi(power) / square(arm)).sum::<f64>();
@@ -104,14 +132,14 @@ fn soft_rows_hold_as_much_and_share_it() {
     let q = -p * sum(1) / sum(2);
     for (arm, force) in arms.into_iter().zip(force.chunks(2)) {
         let expected = (p + q * arm) / square(arm);
-        assert!((force[1] - expected).abs() < 1e-4 && force[0].abs() < 1e-12, "{arm}: {force:?}");
+        assert!((force[1] - expected).abs() < SHARED && force[0].abs() < NO_FORCE, "{arm}: {force:?}");
     }
     // A disagreement of the rows moves nothing, and its forces stay bounded.
     let mut disagreeing = gravity.clone();
-    disagreeing[1] += 1e-9;
+    disagreeing[1] += DISAGREEMENT;
     active.solve(&disagreeing, &mut force);
     let (change, _) = accelerations(&[INERTIA], &sides, &jacobians, &force);
-    assert!((change[0][1] - 10.0).abs() < 1e-8, "{change:?}");
+    assert!((change[0][1] - 10.0).abs() < MOVED_BY_DISAGREEMENT, "{change:?}");
     assert!(force.iter().all(|force| force.abs() < 20.0), "{force:?}");
 }
 
@@ -158,7 +186,7 @@ fn rows_that_depend_on_no_others_are_as_stiff_as_before() {
     // A heavy body hangs from a light one, which a pin holds; beside them a body is pinned twice.
     let (light, heavy) = (
         InverseInertia { inverse_mass: 1e3, inverse_moment: 1e3 },
-        InverseInertia { inverse_mass: 1e-5, inverse_moment: 1e-5 },
+        InverseInertia { inverse_mass: OF_HEAVY, inverse_moment: OF_HEAVY },
     );
     let (to_world, between) =
         (pin([Some(0), None], [[0.3, 0.1], [0.0; 2]]), pin([Some(0), Some(1)], [[-0.2, 0.4], [0.1, -0.5]]));
@@ -182,8 +210,10 @@ fn rows_that_depend_on_no_others_are_as_stiff_as_before() {
     let mut force = vec![0.0; rows.len()];
     active.solve(&offset, &mut force);
     let (_, rates) = accelerations(&inertia, &rows, &jacobians, &force);
-    // Forces of 4e5 N on a body of a gram.
-    assert!(rates.iter().zip(&offset).all(|(rate, offset)| (rate + offset).abs() < 1e-6), "{rates:?}");
+    assert!(
+        rates.iter().zip(&offset).all(|(rate, offset)| (rate + offset).abs() < LEFT_OF_LARGE),
+        "{rates:?}"
+    );
 }
 
 #[test]
@@ -209,7 +239,7 @@ fn another_structure_can_follow() {
         assert_eq!(active.factorize(&vec![[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]; count]), 0);
         let mut force = vec![0.0; count];
         active.solve(&vec![-0.8; count], &mut force);
-        assert!(force.iter().all(|f| (f - 1.0).abs() < 1e-15));
+        assert!(force.iter().all(|f| (f - 1.0).abs() < ONE_FORCE));
     }
 }
 
@@ -239,7 +269,7 @@ fn two_gears_on_one_carrier_turn_as_their_ratios_say() {
     let [p, c] = [-2.25 / 3.6, 1.0 / 3.6];
     let expected = 1.0 / (1.0 / 3.0 + p * p / 5.0 + c * c / 0.5);
     for (change, share) in change.iter().zip([1.0, p, c]) {
-        assert!((change[2] - share * expected).abs() < 1e-14 && change[..2] == [0.0; 2], "{change:?}");
+        assert!((change[2] - share * expected).abs() < GEARED && change[..2] == [0.0; 2], "{change:?}");
     }
 }
 
@@ -260,7 +290,10 @@ fn a_gear_given_twice_depends_and_soft_rows_share_its_load() {
     let mut force = [0.0; 2];
     active.solve(&[1.0; 2], &mut force);
     let (_, rates) = accelerations_with_thirds(&inertia, (&sides, &thirds), &[row; 2], &force);
-    assert!((force[0] - force[1]).abs() < 1e-6 && (rates[0] + 1.0).abs() < 1e-13, "{force:?} {rates:?}");
+    assert!(
+        (force[0] - force[1]).abs() < SHARED_BY_TWINS && (rates[0] + 1.0).abs() < SOFTLY_GEARED,
+        "{force:?} {rates:?}"
+    );
 }
 
 #[test]
