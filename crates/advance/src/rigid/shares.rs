@@ -92,3 +92,9 @@ pub(crate) const ROUNDED_FORCE: f64 = 1e-9;
 ///
 /// No test fails at 16 nor at 256.
 pub(crate) const ROUNDINGS: f64 = 64.0;
+/// Share [-] by which the bounds of a problem are less than those that count. A contact that is this near its bound and slips by mistake
+/// is slowed down, and stops at once.
+pub(crate) const NARROWED: f64 = 1e-7;
+/// Share [-] of the largest acceleration, or of that by the force that presses, from which a slip accelerates: between what solutions
+/// are off, and what a contact at its bound does where bounds are less by [`NARROWED`].
+pub(crate) const MOVES: f64 = 3e-13;

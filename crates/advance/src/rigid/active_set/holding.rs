@@ -3,7 +3,7 @@
 //! Where several hold the same motion, or one beside contacts that stick, their rows depend on each other. A solution then leaves them
 //! more than rounding of an acceleration, which tells nothing of one at its bound; and their forces are not unique.
 
-use crate::rigid::active_set::pulls::Pulling;
+use crate::rigid::active_set::pulling::Pulling;
 use crate::rigid::active_set::redundant::{Redundant, Rows};
 use crate::rigid::active_set::settling::Settling;
 use crate::rigid::bodies::assembly::Assembly;

@@ -3,10 +3,11 @@
 use crate::rigid::active_set::posing::pose_problem;
 use crate::rigid::active_set::pulls::all_hold;
 use crate::rigid::active_set::settling::Settling;
-use crate::rigid::active_set::slips::{NARROWED, all_stick};
+use crate::rigid::active_set::slips::all_stick;
 use crate::rigid::group::stage::Stage;
 use crate::rigid::region::touching::Region;
 use crate::rigid::region::view::View;
+use crate::rigid::shares::NARROWED;
 
 /// Shares the forces of contacts that stick otherwise, each as far from its bound as can be: where rows are redundant many forces give the
 /// same motion, and the next event comes the later.

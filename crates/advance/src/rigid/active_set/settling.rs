@@ -3,7 +3,7 @@
 
 use crate::rigid::active_set::exclusion::Excluded;
 use crate::rigid::active_set::levers::Levers;
-use crate::rigid::active_set::pulls::Pulling;
+use crate::rigid::active_set::pulling::Pulling;
 use crate::rigid::active_set::redundant::Redundant;
 use crate::rigid::active_set::slips::Slip;
 use crate::rigid::books::report::RowForce;

@@ -13,17 +13,10 @@ use crate::rigid::contacts::rolling::turn_of;
 use crate::rigid::contacts::touch::{Touch, sorted};
 use crate::rigid::region::cause::Cause;
 use crate::rigid::region::touching::Region;
-use crate::rigid::shares::ROUNDED_FORCE;
+use crate::rigid::shares::{MOVES, NARROWED, ROUNDED_FORCE};
 use crate::rigid::surface::PairSurface;
 use halfgap_collision::{BodyId, Collision, TangentRow};
 use halfgap_contact::{InverseInertia, Solution};
-
-/// Share [-] by which the bounds of a problem are less than those that count. A contact that is this near its bound and slips by mistake
-/// is slowed down, and stops at once.
-pub(super) const NARROWED: f64 = 1e-7;
-/// Share [-] of the largest acceleration, or of that by the force that presses, from which a slip accelerates: between what solutions
-/// are off, and what a contact at its bound does where bounds are less by [`NARROWED`].
-pub(super) const MOVES: f64 = 3e-13;
 
 /// The friction of a candidate along an axis.
 #[derive(Clone, Copy, Debug)]
