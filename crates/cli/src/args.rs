@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::solve::SolveArgs;
+use crate::source::SceneArgs;
 use crate::vary::Vary;
 use clap::{Parser, Subcommand};
 use std::num::NonZeroUsize;
@@ -31,8 +32,8 @@ pub(crate) enum Command {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct RunOptions {
-    /// The scene, a .toml or .json file.
-    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
     /// Write the recording (CSV and JSON) and pictures (SVG) to this folder, also when Ctrl-C stops the run.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -75,11 +76,11 @@ pub(crate) struct CheckOptions {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct SweepOptions {
-    /// The scene, a .toml or .json file.
-    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
     /// The number to vary and its values: N of them from A to B, ends included, evenly spaced, or with equal ratios if
-    /// /log follows. FIELD is the path of a number in the scene, such as body.ball.elasticity, body[0].position[1] or
-    /// run.tolerance.
+    /// /log follows. FIELD is the path of a number in the scene, such as body.ball.elasticity, body[0].position[1],
+    /// run.tolerance, or let.r for what `[let]` names.
     #[arg(long, value_name = "FIELD=A..B/N[/log]", allow_hyphen_values = true)]
     pub(crate) vary: Vary,
     /// Write the table, with the final states, to this CSV file.

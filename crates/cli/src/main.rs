@@ -1,6 +1,6 @@
 //! The `halfgap` command: runs, varies and checks scene files, and solves contact problems.
 //!
-//! `args` declares the command line; each subcommand is a module of its own (`run` with `files` and `repeat`, `check`,
+//! `args` declares the command line; `source` reads the scene of a command; each subcommand is a module of its own (`run` with `files` and `repeat`, `check`,
 //! `sweep` with `vary` and `rows`, `solve`), `failure` makes messages and exit codes, `table` the tables and `numbers`
 //! what stands in them, `output` writes to standard output and standard error, `progress` shows the progress bar,
 //! `interrupt` handles Ctrl-C and SIGTERM.
@@ -23,6 +23,7 @@ mod repeat;
 mod rows;
 mod run;
 mod solve;
+mod source;
 mod sweep;
 mod table;
 mod vary;

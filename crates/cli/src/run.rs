@@ -6,13 +6,12 @@ use crate::interrupt::Interrupt;
 use crate::progress::{Progress, Shown, Way};
 use crate::repeat::Repeats;
 use crate::{files, output, table};
-use halfgap::scene::SceneSource;
 use halfgap::{Outcome, Probe, Reached, Record, RunPlan, RunResult, World, estimate_error, run as run_world};
 use std::num::NonZeroUsize;
 use std::path::Path;
 
 pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
-    let source = SceneSource::read(&options.scene)?;
+    let source = options.scene.source()?;
     let mut scene = source.parse()?;
     if let Some(tolerance) = options.tolerance {
         scene.set_tolerance(tolerance, "--tolerance")?;
@@ -26,7 +25,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     }
     let mut world = World::from_scene(&scene).map_err(|error| source.locate(error))?;
     for warning in world.warnings() {
-        output::tell(&format!("warning: {}: {warning}", options.scene.display()));
+        output::tell(&format!("warning: {}: {warning}", options.scene.scene.display()));
     }
     let probes = Probe::of_scene(&scene, &world).map_err(|error| source.locate(error))?;
     let interrupt = Interrupt::listen();
@@ -73,10 +72,10 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
         (false, true) => output::print(&table::of_estimate(&result)),
     };
     for finding in &report.findings {
-        output::tell(&format!("warning: {}: {finding}", options.scene.display()));
+        output::tell(&format!("warning: {}: {finding}", options.scene.scene.display()));
     }
     if let Some(error) = &report.error {
-        output::tell(&format!("error: {}: stopped early: {error}", options.scene.display()));
+        output::tell(&format!("error: {}: stopped early: {error}", options.scene.scene.display()));
     }
     if let (Ok(true), Some(folder)) = (&problem, &options.out) {
         let path = folder.join(files::PROBLEM);
@@ -87,7 +86,7 @@ pub(crate) fn run(options: &RunOptions) -> Result<End, Failure> {
     }
     let repeated = repeats
         .zip(options.repeat)
-        .map_or(End::Done, |(made, wanted)| tell_repeats(&made, wanted, &options.scene));
+        .map_or(End::Done, |(made, wanted)| tell_repeats(&made, wanted, &options.scene.scene));
     written?;
     problem?;
     printed?;

@@ -11,7 +11,7 @@ use crate::numbers::{change, given};
 use crate::output;
 use crate::progress::{Progress, Shown, Way};
 use crate::rows::{QUANTITIES, Rows};
-use halfgap::scene::{Scene, SceneError, SceneSource, VariedScene};
+use halfgap::scene::{Scene, SceneError, VariedScene};
 use halfgap::{Outcome, Reached, Record, RunPlan, RunResult, World, run};
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
@@ -47,7 +47,7 @@ struct Sweep {
 }
 
 pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
-    let source = SceneSource::read(&options.scene)?;
+    let source = options.scene.source()?;
     let varied = VariedScene::new(source.clone(), &options.vary.field)?;
     let values = options.vary.values();
     // All scenes are read before the first runs, so that a value out of range is found at once.
@@ -77,7 +77,7 @@ pub(crate) fn sweep(options: &SweepOptions) -> Result<End, Failure> {
     // A failure to write is reported last, so that the results are not lost with it.
     let written =
         rows.map_or(Ok(()), |rows| rows.into_inner().unwrap_or_else(PoisonError::into_inner).finish());
-    tell_on_stderr(&sweep, &options.scene, values.len());
+    tell_on_stderr(&sweep, &options.scene.scene, values.len());
     if options.json {
         let json = serde_json::to_string(&sweep).expect("a sweep is strings and numbers only");
         output::print(&format!("{json}\n"))?;

@@ -10,6 +10,7 @@ mod friction_told;
 mod groups;
 mod heaps;
 mod impacts;
+mod language;
 mod laws;
 mod mechanisms;
 mod mirror;

@@ -37,6 +37,24 @@ const EXTREMES: [&str; 22] = [
     "1e-16",
 ];
 
+/// Replacements in scenes with names, expressions and repetition, beside those.
+const EXPRESSIONS: [&str; 12] = [
+    "\"= 1/0\"",
+    "\"= i\"",
+    "\"= n\"",
+    "\"= -n^9^9\"",
+    "\"= ((((\"",
+    "\"= sqrt(-1e9)\"",
+    "\"=\"",
+    "\"{i}\"",
+    "let",
+    "repeat",
+    "n",
+    "pi",
+];
+/// Scenes with names, expressions and repetition.
+const LANGUAGE: [&str; 3] = ["let_and_expressions", "repeat_ring_pairs", "repeat_row"];
+
 fn texts(format: SceneFormat) -> Vec<String> {
     let paths: Vec<_> = match format {
         SceneFormat::Json => {
@@ -52,6 +70,7 @@ fn texts(format: SceneFormat) -> Vec<String> {
         paths.iter().map(|path| read_to_string(path).expect("a readable scene")).collect();
     texts.retain(|text| text.len() < LONGEST);
     texts.sort();
+    assert!(texts.len() > 5, "{} texts", texts.len());
     texts
 }
 
@@ -80,7 +99,7 @@ fn mangle(random: &mut Random, text: &str) -> String {
             0 => with_other_bytes(random, &mangled),
             1 => with_other_line(random, &mangled),
             2 => mangled.chars().take(random.below(mangled.len().max(1))).collect(),
-            _ => with_other_token(random, &mangled),
+            _ => with_other_token(random, &mangled, &EXTREMES),
         };
     }
     mangled
@@ -111,22 +130,20 @@ fn with_other_line(random: &mut Random, text: &str) -> String {
     lines.join("\n")
 }
 
-/// The text with a word or a number replaced by an extreme one, or by another one of the text.
-fn with_other_token(random: &mut Random, text: &str) -> String {
+/// The text with a word or a number replaced by one of `others`, or by another one of the text.
+fn with_other_token(random: &mut Random, text: &str, others: &[&str]) -> String {
     let tokens = tokens(text);
     if tokens.is_empty() {
         return text.to_owned();
     }
     let (from, to) = tokens[random.below(tokens.len())];
     let (start, end) = tokens[random.below(tokens.len())];
-    let other = if random.chance(0.7) { random.one_of(&EXTREMES) } else { &text[start..end] };
+    let other = if random.chance(0.7) { random.one_of(others) } else { &text[start..end] };
     format!("{}{other}{}", &text[..from], &text[to..])
 }
 
 /// Parses mangled texts; counts those that are still scenes.
-fn run(format: SceneFormat) {
-    let texts = texts(format);
-    assert!(texts.len() > 5, "{} texts", texts.len());
+fn run(format: SceneFormat, texts: &[String], mangle: impl Fn(&mut Random, &str) -> String) {
     let mut parsed = 0;
     for seed in 0..COUNT {
         let mut random = Random::new(seed);
@@ -145,10 +162,17 @@ fn run(format: SceneFormat) {
 
 #[test]
 fn mangled_json_never_panics() {
-    run(SceneFormat::Json);
+    run(SceneFormat::Json, &texts(SceneFormat::Json), mangle);
 }
 
 #[test]
 fn mangled_toml_never_panics() {
-    run(SceneFormat::Toml);
+    run(SceneFormat::Toml, &texts(SceneFormat::Toml), mangle);
+}
+
+#[test]
+fn mangled_expressions_never_panic() {
+    let read = |name| read_to_string(data(&format!("language/{name}.toml"))).expect("a readable scene");
+    let others = [&EXTREMES[..], &EXPRESSIONS].concat();
+    run(SceneFormat::Toml, &LANGUAGE.map(read), |random, text| with_other_token(random, text, &others));
 }

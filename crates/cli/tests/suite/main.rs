@@ -2,5 +2,6 @@
 
 mod command;
 mod determinism;
+mod language;
 mod messages;
 mod newcomer;

@@ -109,6 +109,12 @@ impl SceneError {
         self
     }
 
+    /// The same at another field and with another message.
+    pub(crate) fn moved_to(mut self, field: FieldPath, message: String) -> Self {
+        (self.report.field, self.report.message) = (field, message);
+        self
+    }
+
     pub(crate) fn in_file(mut self, file: Option<&Path>) -> Self {
         self.report.file = file.map(Path::to_path_buf);
         self

@@ -1,6 +1,6 @@
 //! Scene files, format `halfgap-scene-1`: plain data, read from TOML or JSON.
 //!
-//! `source` reads and parses a text (`tables` refuses arrays for tables), `validate` checks the values, `locate` finds
+//! `source` reads and parses a text, `language` knows names, expressions and repetition, `validate` checks the values, `locate` finds
 //! the line of a field for messages, `nearest` finds what a mistyped name may stand for, `varied` puts other numbers
 //! into one field, and `supported` refuses fields of the format that are not simulated yet. SI units, radians,
 //! counter-clockwise positive, y up.
@@ -11,6 +11,7 @@ mod error;
 mod expected;
 mod field_path;
 mod force;
+mod language;
 mod locate;
 mod motion;
 mod named;
@@ -22,7 +23,6 @@ mod run_data;
 mod shape;
 mod source;
 mod supported;
-mod tables;
 mod validate;
 mod varied;
 mod vector;

@@ -3,21 +3,23 @@
 use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
+use super::language::{Expansion, Reading, Tree, expression_in};
 use super::locate::find_offset;
 use super::nearest::with_nearest;
-use super::tables::Tables;
+use serde::Deserialize;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Largest size of a JSON file [bytes]; larger ones are refused unread. Scenes of 100,000 bodies fit.
-const LARGEST_JSON: u64 = 64 << 20;
-/// Largest size of a TOML file [bytes]; larger ones are refused unread. TOML is written by hand, and its parser needs
-/// up to fifty times as much memory.
-const LARGEST_TOML: u64 = 8 << 20;
+/// Largest size of a file [bytes]; larger ones are refused unread. Scenes of 100,000 bodies fit.
+const LARGEST_FILE: u64 = 64 << 20;
 
 /// serde_json's message for a number beyond the doubles.
 const TOO_LARGE: &str = "number out of range";
+/// serde_json's message for what is nested too deeply.
+const TOO_DEEP: &str = "recursion limit exceeded";
+/// The byte order mark that some editors put before a text.
+const MARK: char = '\u{feff}';
 
 /// Text format of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,11 +42,10 @@ impl SceneFormat {
         }
     }
 
-    fn largest_file(self) -> u64 {
-        match self {
-            Self::Toml => LARGEST_TOML,
-            Self::Json => LARGEST_JSON,
-        }
+    /// Guesses the format of a text: JSON begins with a brace.
+    #[must_use]
+    pub fn of_text(text: &str) -> Self {
+        if text.trim_start_matches(MARK).trim_start().starts_with('{') { Self::Json } else { Self::Toml }
     }
 }
 
@@ -54,13 +55,15 @@ pub struct SceneSource {
     text: String,
     format: SceneFormat,
     file: Option<PathBuf>,
+    /// Names in `[let]`, with the numbers or expressions that take the place of theirs.
+    changes: Vec<(String, String)>,
 }
 
 impl SceneSource {
     /// Makes the source of a scene from its text.
     #[must_use]
     pub fn new(text: impl Into<String>, format: SceneFormat) -> Self {
-        Self { text: without_mark(text.into()), format, file: None }
+        Self { text: without_mark(text.into()), format, file: None, changes: Vec::new() }
     }
 
     /// Reads a `.toml` or `.json` file.
@@ -78,23 +81,38 @@ impl SceneSource {
         let Some(format) = SceneFormat::of_file(path) else {
             return Err(fail("a scene file's name must end in .toml or .json".to_owned()));
         };
-        let limit = format.largest_file();
         let too_large =
-            |size: String| fail(format!("has {size} bytes; a scene file may have at most {limit}"));
-        if metadata.len() > limit {
+            |size: String| fail(format!("has {size} bytes; a scene file may have at most {LARGEST_FILE}"));
+        if metadata.len() > LARGEST_FILE {
             return Err(too_large(metadata.len().to_string()));
         }
-        let mut bytes = Vec::new();
-        // A device or a growing file may hold more than its size says.
         let file = File::open(path).map_err(unreadable)?;
-        let read = file.take(limit + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        if read as u64 > limit {
-            return Err(too_large(format!("more than {limit}")));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            fail(format!("is not UTF-8 text: byte {} is not", error.utf8_error().valid_up_to()))
-        })?;
-        Ok(Self { text: without_mark(text), format, file: Some(path.to_path_buf()) })
+        let bytes = read_at_most(file).map_err(unreadable)?;
+        let bytes = bytes.ok_or_else(|| too_large(format!("more than {LARGEST_FILE}")))?;
+        let text = text_of(bytes).map_err(fail)?;
+        Ok(Self { file: Some(path.to_path_buf()), ..Self::new(text, format) })
+    }
+
+    /// Reads a scene from a stream, such as standard input; the format is guessed if it is not given. Messages call the file `-`.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a stream that cannot be read, is too large, or is not UTF-8.
+    pub fn read_from(stream: impl Read, format: Option<SceneFormat>) -> Result<Self, SceneError> {
+        let file = Path::new("-");
+        let fail = |message: String| SceneError::new(FieldPath::top(), message).in_file(Some(file));
+        let unreadable = |cause: io::Error| fail(format!("cannot be read: {cause}")).caused_by(cause);
+        let bytes = read_at_most(stream).map_err(unreadable)?;
+        let bytes = bytes.ok_or_else(|| fail(format!("a scene may have at most {LARGEST_FILE} bytes")))?;
+        let text = text_of(bytes).map_err(fail)?;
+        let format = format.unwrap_or_else(|| SceneFormat::of_text(&text));
+        Ok(Self { file: Some(file.to_path_buf()), ..Self::new(text, format) })
+    }
+
+    /// Gives a name in `[let]` another value: a number or an expression, with or without its `=`.
+    #[must_use]
+    pub fn with_let(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
+        self.changes.push((name.into(), value.into()));
+        self
     }
 
     /// Parses and validates the scene.
@@ -102,17 +120,21 @@ impl SceneSource {
     /// # Errors
     /// [`SceneError`] for the first fault, with line and field.
     pub fn parse(&self) -> Result<Scene, SceneError> {
-        let scene = match self.format {
-            SceneFormat::Toml => self.parse_toml(),
-            SceneFormat::Json => self.parse_json(),
-        }?;
-        scene.validate().map_err(|error| self.locate(error))?;
-        Ok(scene)
+        self.scene_of(&self.tree()?)
     }
 
-    /// Adds file, line and text to an error that has only its field.
+    /// Adds file, line and text to an error that has only its field. What comes from a repeated element is led back to it.
     #[must_use]
     pub fn locate(&self, error: SceneError) -> SceneError {
+        let Ok(tree) = self.tree() else { return self.place(error) };
+        match Expansion::of(&tree, &self.changes) {
+            Ok(expansion) => self.place_origin(error, &tree, &expansion),
+            Err(_) => self.place(error),
+        }
+    }
+
+    /// Adds file, line and text to an error whose field is one of the text.
+    pub(super) fn place(&self, error: SceneError) -> SceneError {
         let offset = find_offset(&self.text, self.format, error.field());
         let error = error.in_file(self.file.as_deref());
         match offset {
@@ -121,42 +143,69 @@ impl SceneSource {
         }
     }
 
+    /// The scene that a text stands for, of which `tree` are the data.
+    pub(super) fn scene_of(&self, tree: &Tree) -> Result<Scene, SceneError> {
+        if !matches!(tree, Tree::Table(_)) {
+            let message = format!("invalid type: {}, expected a table", tree.unexpected());
+            return Err(self.data_error(FieldPath::top(), &message));
+        }
+        let expansion = Expansion::of(tree, &self.changes).map_err(|error| self.place(error))?;
+        let scene: Scene =
+            serde_path_to_error::deserialize(Reading::new(tree, &expansion)).map_err(|error| {
+                let error = SceneError::new(field_path(error.path()), plain(&error.inner().to_string()));
+                // A field that is missing at the top has no place: line 1 is named.
+                self.place_origin(error, tree, &expansion).at_offset(&self.text, 0)
+            })?;
+        scene.validate().map_err(|error| self.place_origin(error, tree, &expansion))?;
+        Ok(scene)
+    }
+
+    /// Places an error of the scene that the text stands for, and tells the expression and the numbers that have led to it.
+    fn place_origin(&self, error: SceneError, tree: &Tree, expansion: &Expansion) -> SceneError {
+        let origin = expansion.origin(error.field());
+        let value = origin.field.steps().iter().try_fold(tree, |tree, step| tree.part(step));
+        let expression = value.and_then(Tree::text).and_then(expression_in);
+        let expression =
+            expression.filter(|_| !error.message().contains("in `=")).map(|text| format!("from `={text}`"));
+        let names = Some(format!("with {}", origin.bindings)).filter(|_| !origin.bindings.is_empty());
+        let told: Vec<String> = expression.into_iter().chain(names).collect();
+        let message = if told.is_empty() {
+            error.message().to_owned()
+        } else {
+            format!("{} ({})", error.message(), told.join(", "))
+        };
+        self.place(error.moved_to(origin.field, message))
+    }
+
     /// Parses the text as plain data, without checks of its fields.
-    pub(super) fn data(&self) -> Result<serde_json::Value, SceneError> {
+    pub(super) fn tree(&self) -> Result<Tree, SceneError> {
         match self.format {
-            SceneFormat::Toml => {
-                toml::from_str(&self.text).map_err(|error| self.syntax_error(error.message(), 0))
-            }
-            SceneFormat::Json => {
-                serde_json::from_str(&self.text).map_err(|error| self.syntax_error(&error.to_string(), 0))
-            }
+            SceneFormat::Toml => self.parse_toml(),
+            SceneFormat::Json => self.parse_json(),
         }
     }
 
-    fn parse_toml(&self) -> Result<Scene, SceneError> {
+    fn parse_toml(&self) -> Result<Tree, SceneError> {
         let syntax = |error: toml::de::Error| {
             let offset = error.span().map_or(0, |span| span.start);
             self.syntax_error(&error.message().trim_end().replace('\n', "; "), offset)
         };
         let deserializer = toml::Deserializer::parse(&self.text).map_err(syntax)?;
-        serde_path_to_error::deserialize(Tables(deserializer)).map_err(|error| {
-            let field = field_path(error.path());
-            self.data_error(field, error.inner().message())
-        })
+        Tree::deserialize(deserializer).map_err(syntax)
     }
 
-    fn parse_json(&self) -> Result<Scene, SceneError> {
+    fn parse_json(&self) -> Result<Tree, SceneError> {
         let mut deserializer = serde_json::Deserializer::from_str(&self.text);
-        let scene = serde_path_to_error::deserialize(Tables(&mut deserializer)).map_err(|error| {
+        let tree = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let (field, inner) = (field_path(error.path()), error.inner());
             let offset = offset_of(&self.text, inner.line(), inner.column());
             let message = inner.to_string();
             // serde_json puts its own place behind the message.
             let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
-            match inner.classify() {
+            match message {
                 // serde_json counts this among the mistakes of syntax.
-                _ if message == TOO_LARGE => self.data_error(field, "the number is too large"),
-                serde_json::error::Category::Data => self.data_error(field, message),
+                TOO_LARGE => self.data_error(field, "the number is too large"),
+                TOO_DEEP => self.syntax_error("arrays and tables are nested deeper than 127 levels", offset),
                 _ => self.syntax_error(message, offset),
             }
         })?;
@@ -166,12 +215,11 @@ impl SceneSource {
                 offset_of(&self.text, error.line(), error.column()),
             )
         })?;
-        Ok(scene)
+        Ok(tree)
     }
 
     fn data_error(&self, field: FieldPath, message: &str) -> SceneError {
-        // A field that is missing at the top has no place: line 1 is named.
-        self.locate(SceneError::new(field, plain(message))).at_offset(&self.text, 0)
+        self.place(SceneError::new(field, plain(message))).at_offset(&self.text, 0)
     }
 
     fn syntax_error(&self, message: &str, offset: usize) -> SceneError {
@@ -185,9 +233,20 @@ impl SceneSource {
     }
 }
 
+/// Reads a stream to its end; `None` if that is farther than a scene may go. A device or a growing file may hold more than its size says.
+fn read_at_most(stream: impl Read) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    let read = stream.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    Ok((read as u64 <= LARGEST_FILE).then_some(bytes))
+}
+
+fn text_of(bytes: Vec<u8>) -> Result<String, String> {
+    String::from_utf8(bytes)
+        .map_err(|error| format!("is not UTF-8 text: byte {} is not", error.utf8_error().valid_up_to()))
+}
+
 /// Returns the text without the byte order mark that some editors put before it.
 fn without_mark(mut text: String) -> String {
-    const MARK: char = '\u{feff}';
     if text.starts_with(MARK) {
         text.remove(0);
     }

@@ -5,22 +5,18 @@
 use super::Scene;
 use super::error::SceneError;
 use super::field_path::{FieldPath, Step};
+use super::language::{Tree, expression_in};
 use super::nearest::did_you_mean;
-use super::source::{SceneSource, field_path, plain};
-use super::tables::Tables;
-use serde_json::{Number, Value};
-
-/// Size below which whole numbers are exact as floating-point numbers, 2^53.
-const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+use super::source::SceneSource;
 
 /// Tables at the top of a scene that have numbers.
-const TABLES: [&str; 6] = ["run", "body", "connector", "force", "pair", "expected"];
+const TABLES: [&str; 7] = ["let", "run", "body", "connector", "force", "pair", "expected"];
 
 /// A scene in which one number takes other values.
 #[derive(Clone, Debug)]
 pub struct VariedScene {
     source: SceneSource,
-    data: Value,
+    data: Tree,
     field: FieldPath,
 }
 
@@ -31,9 +27,9 @@ impl VariedScene {
     /// # Errors
     /// [`SceneError`] if the scene is not valid, there is no such field, or it is not a number.
     pub fn new(source: SceneSource, field: &FieldPath) -> Result<Self, SceneError> {
-        source.parse()?;
-        let data = source.data()?;
-        let field = resolved(&data, field).map_err(|error| source.locate(error))?;
+        let data = source.tree()?;
+        source.scene_of(&data)?;
+        let field = resolved(&data, field).map_err(|error| source.place(error))?;
         Ok(Self { source, data, field })
     }
 
@@ -48,51 +44,40 @@ impl VariedScene {
     /// # Errors
     /// [`SceneError`] if the format has no such field, or the value is out of its range.
     pub fn with(&self, value: f64) -> Result<Scene, SceneError> {
-        let located = |error: SceneError| {
-            let message = format!("{} (varied to {value})", error.message());
-            self.source.locate(SceneError::new(error.field().clone(), message))
+        let told = |error: SceneError| {
+            let (field, message) =
+                (error.field().clone(), format!("{} (varied to {value})", error.message()));
+            error.moved_to(field, message)
         };
+        let bad = |message: &str| told(self.source.place(SceneError::new(self.field.clone(), message)));
+        if !value.is_finite() {
+            return Err(bad("must be finite"));
+        }
         let mut data = self.data.clone();
-        let number = number(value).ok_or_else(|| located(self.bad("must be finite")))?;
-        put(&mut data, self.field.steps(), number)
-            .ok_or_else(|| located(self.bad("there is no such field")))?;
-        let scene: Scene = serde_path_to_error::deserialize(Tables(data)).map_err(|error| {
-            located(SceneError::new(field_path(error.path()), plain(&error.inner().to_string())))
-        })?;
-        scene.validate().map_err(located)?;
-        Ok(scene)
+        put(&mut data, self.field.steps(), value).ok_or_else(|| bad("there is no such field"))?;
+        self.source.scene_of(&data).map_err(told)
     }
-
-    fn bad(&self, message: &str) -> SceneError {
-        SceneError::new(self.field.clone(), message)
-    }
-}
-
-/// Returns a value as an integer if it is whole, so that it also fits fields of integers; `None` if it is not finite.
-fn number(value: f64) -> Option<Number> {
-    let is_whole =
-        value.fract() == 0.0 && value.abs() < LARGEST_WHOLE && !(value == 0.0 && value.is_sign_negative());
-    if is_whole { Some(Number::from(value as i64)) } else { Number::from_f64(value) }
 }
 
 /// Returns the path with names of elements replaced by their indices.
-fn resolved(data: &Value, field: &FieldPath) -> Result<FieldPath, SceneError> {
+fn resolved(data: &Tree, field: &FieldPath) -> Result<FieldPath, SceneError> {
     let (mut place, mut now) = (FieldPath::top(), Some(data));
     for (index, step) in field.steps().iter().enumerate() {
         let is_last = index + 1 == field.steps().len();
         let missing = |what: String| SceneError::new(field.clone(), what);
         match (now, step) {
-            (Some(Value::Object(table)), Step::Field(name)) => {
+            (Some(table @ Tree::Table(fields)), Step::Field(name)) => {
                 now = table.get(name);
                 if now.is_none() && !is_last {
                     let tables = index == 0;
-                    let known = table.keys().map(String::as_str).chain(TABLES.into_iter().filter(|_| tables));
+                    let keys = fields.iter().map(|(key, _)| key.as_str());
+                    let known = keys.chain(TABLES.into_iter().filter(|_| tables));
                     let question = did_you_mean(name, known, '`');
                     return Err(missing(format!("there is no `{name}` in the scene{question}")));
                 }
                 place = place.field(name);
             }
-            (Some(Value::Array(elements)), step) => {
+            (Some(Tree::Array(elements)), step) => {
                 let found = element(elements, step).ok_or_else(|| missing(absent(elements, step)))?;
                 now = elements.get(found);
                 place = place.element(found);
@@ -100,28 +85,31 @@ fn resolved(data: &Value, field: &FieldPath) -> Result<FieldPath, SceneError> {
             _ => return Err(missing(format!("`{place}` has no parts"))),
         }
     }
-    match now {
-        None | Some(Value::Number(_)) if !field.is_top() => Ok(place),
-        _ => Err(SceneError::new(place, "is no number and cannot be varied")),
+    let is_number = |value: &Tree| {
+        value.number().is_some() || value.text().is_some_and(|text| expression_in(text).is_some())
+    };
+    match now.is_none_or(is_number) && !field.is_top() {
+        true => Ok(place),
+        false => Err(SceneError::new(place, "is no number and cannot be varied")),
     }
 }
 
 /// Returns the index of the element with an index or a name.
-fn element(elements: &[Value], step: &Step) -> Option<usize> {
+fn element(elements: &[Tree], step: &Step) -> Option<usize> {
     match step {
         Step::Element(index) => (*index < elements.len()).then_some(*index),
         Step::Field(name) => {
-            let has_name = |element: &Value| element.get("name").and_then(Value::as_str) == Some(name);
+            let has_name = |element: &Tree| element.get("name").and_then(Tree::text) == Some(name);
             elements.iter().position(has_name)
         }
     }
 }
 
-fn absent(elements: &[Value], step: &Step) -> String {
+fn absent(elements: &[Tree], step: &Step) -> String {
     match step {
         Step::Element(index) => format!("there is no element {index}: there are {}", elements.len()),
         Step::Field(name) => {
-            let names: Vec<_> = elements.iter().filter_map(|element| element.get("name")?.as_str()).collect();
+            let names: Vec<_> = elements.iter().filter_map(|element| element.get("name")?.text()).collect();
             match names.is_empty() {
                 true => format!(
                     "there is no `{name}`: none of the {} has a name, use [0], [1], ...",
@@ -137,14 +125,20 @@ fn absent(elements: &[Value], step: &Step) -> String {
 }
 
 /// Puts a number at a path; returns `None` if the data have no such path.
-fn put(data: &mut Value, steps: &[Step], number: Number) -> Option<()> {
+fn put(data: &mut Tree, steps: &[Step], number: f64) -> Option<()> {
     let Some((step, rest)) = steps.split_first() else {
-        *data = Value::Number(number);
+        *data = Tree::of_number(number);
         return Some(());
     };
     let part = match (data, step) {
-        (Value::Object(table), Step::Field(name)) => table.entry(name).or_insert(Value::Null),
-        (Value::Array(elements), Step::Element(index)) => elements.get_mut(*index)?,
+        (Tree::Table(fields), Step::Field(name)) => {
+            let place = fields.iter().position(|(key, _)| key == name).unwrap_or_else(|| {
+                fields.push((name.clone(), Tree::Null));
+                fields.len() - 1
+            });
+            &mut fields.get_mut(place)?.1
+        }
+        (Tree::Array(elements), Step::Element(index)) => elements.get_mut(*index)?,
         _ => return None,
     };
     put(part, rest, number)

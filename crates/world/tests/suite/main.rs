@@ -4,6 +4,8 @@ mod failures;
 mod impacts;
 mod integrators;
 mod interventions;
+#[cfg(feature = "scene")]
+mod language;
 mod live;
 #[cfg(feature = "scene")]
 mod newcomer;

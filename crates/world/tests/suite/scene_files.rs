@@ -99,7 +99,7 @@ fn a_table_with_one_key_must_have_exactly_one() {
     insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", "{}"), @"line 14: body[1].shape: must have exactly one key, one of `disc`, `block`, `rounded_block`, `polygon`, `ring`, `outline`");
     insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", "{ egg = 3 }"), @"line 14: body[1].shape: unknown field `egg`, expected one of `disc`, `block`, `rounded_block`, `polygon`, `ring`, `outline`");
     let both = "{ disc = { radius = 0.5 }, block = { width = 1, height = 1 } }";
-    insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", both), @"line 14: body[1].shape: must have exactly one key, found `block` and `disc`");
+    insta::assert_snapshot!(message("{ disc = { radius = 0.5 } }", both), @"line 14: body[1].shape: must have exactly one key, found `disc` and `block`");
     insta::assert_snapshot!(message("[0.0, -9.81] }", "[0.0, -9.81] }\nbodies = [\"ball\"]"), @"line 20: force[0]: must have exactly one key, found `gravity` and `bodies`: what belongs to `gravity` goes into its table");
 }
 
