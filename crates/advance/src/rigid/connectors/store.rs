@@ -70,11 +70,24 @@ pub(crate) struct ConnectorState {
     pub(super) last_taut: Option<Time>,
     /// Number of times that it did so before without time going by.
     pub(super) repeats: u32,
+    /// If it is unilateral: its row at the last event at whose end it was touched.
+    pub(super) seen: Option<SeenRow>,
     /// True if a group watches it as a stop.
     pub(super) is_watched: bool,
     /// Of a stop that a group watches: the start of the group's segment, and the place of the point there; `None` once
     /// the place that the point has come to is noted.
     pub(super) follow: Option<(Time, RailHint)>,
+}
+
+/// The row of a unilateral connector at the end of an event.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct SeenRow {
+    pub(crate) time: Time,
+    /// Gap [m].
+    pub(crate) gap: f64,
+    /// Rate of the gap [m/s].
+    pub(crate) rate: f64,
 }
 
 impl ConnectorState {
@@ -188,6 +201,15 @@ impl Connectors {
         self.states[id.index()].active = active;
     }
 
+    /// Notes the row of a unilateral connector at the end of an event, if it is touched.
+    pub(crate) fn note_seen(&mut self, assembly: &Assembly, id: ConnectorId) {
+        let sample = self.measure_connector(assembly, id, 0, assembly.now());
+        if GapState::of_rope(&sample, &assembly.settings().tolerances).is_touching() {
+            let (gap, rate) = (sample.gap, sample.kinematics.rate);
+            self.states[id.index()].seen = Some(SeenRow { time: assembly.now(), gap, rate });
+        }
+    }
+
     /// Notes that a rope has gone taut, or a stop is met, at a time.
     pub(crate) fn note_taut(&mut self, id: ConnectorId, now: Time) {
         self.states[id.index()].note_taut(now);
@@ -255,6 +277,12 @@ impl ConnectorState {
     #[inline]
     pub(crate) fn corner(&self) -> Option<[RailHint; 2]> {
         self.corner
+    }
+
+    /// If it is unilateral: its row at the last event at whose end it was touched.
+    #[inline]
+    pub(crate) fn seen(&self) -> Option<SeenRow> {
+        self.seen
     }
 
     /// True if it is unilateral and active: its row then takes part in events at any gap.
