@@ -210,6 +210,13 @@ impl Connectors {
         }
     }
 
+    /// Forgets how the unilateral connectors of a body were seen.
+    pub(crate) fn forget_seen_of(&mut self, body: BodyId) {
+        for id in self.of.of(body) {
+            self.states[id.index()].seen = None;
+        }
+    }
+
     /// Notes that a rope has gone taut, or a stop is met, at a time.
     pub(crate) fn note_taut(&mut self, id: ConnectorId, now: Time) {
         self.states[id.index()].note_taut(now);

@@ -77,7 +77,12 @@ fn is_low_bounce(assembly: &Assembly, connectors: &Connectors, pairs: &Pairs, re
     if let Detector::Connector { id, .. } = record.parties.detector {
         let Some(SeenRow { time, gap, rate }) = connectors.states()[id.index()].seen() else { return false };
         let is_struck = is_struck_since(assembly, record.bodies(), time);
-        return stayed_low(assembly, &Before { time, gap, rate, is_often_low: false, is_struck }, down, tolerances);
+        return stayed_low(
+            assembly,
+            &Before { time, gap, rate, is_often_low: false, is_struck },
+            down,
+            tolerances,
+        );
     }
     let Some((pair, features)) = features_of(pairs, record) else { return false };
     has_stayed_low(assembly, pairs, pair, features, down, tolerances)
@@ -162,11 +167,7 @@ fn stayed_low(
     // Forces may press bodies together with many times the scene's acceleration. A pair of which a body was struck, as in a
     // deep heap, must be slower: else the energy of a blow is lost, which an elastic body passes on and gets back at once.
     let is_low = || {
-        if seen.is_struck {
-            forced(MAJOR)
-        } else {
-            went <= most || forced(HUGE)
-        }
+        if seen.is_struck { forced(MAJOR) } else { went <= most || forced(HUGE) }
     };
     seen.gap + rise <= most && is_low()
 }
