@@ -60,7 +60,7 @@ pub(crate) struct EnergyScales {
     pub(crate) usual: f64,
     /// Work of the forces at the start along a target gap.
     pub(crate) rough: f64,
-    /// Work of the forces within the tolerance of the bodies' sizes, and energy of a speed that is rounding.
+    /// Work of the forces and torques within the tolerance of the bodies' sizes, and energy of a speed that is rounding.
     pub(crate) lost: f64,
     /// Rounding of the correction at the start: velocities that it took away do not become exact zeros.
     pub(crate) left: f64,

@@ -4,9 +4,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::by_body::ByBody;
 use crate::rigid::bodies::instant::is_same_time;
 use crate::time::Time;
-use halfgap_collision::{
-    BodyId, Connector, ConnectorId, ConnectorKind, ConnectorSample, GapState, RailHint, Rope,
-};
+use halfgap_collision::{BodyId, Connector, ConnectorId, ConnectorKind, GapState, RailHint, Rope};
 
 /// All connectors with their states, and lists of them by body.
 #[derive(Clone, Debug)]
@@ -128,26 +126,22 @@ impl Connectors {
         self.states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
     }
 
-    /// A stop as it is watched along a segment that starts now.
+    /// A unilateral connector as it is watched along a segment that starts now.
     pub(crate) fn stop(&self, assembly: &Assembly, id: ConnectorId) -> Stop {
-        let connector = self.connector(id);
         let hint = self.hint_at(assembly, id, 0, assembly.now());
-        let sample = self.measure_connector(assembly, id, 0, assembly.now());
-        // A stop of a rail that fires again without time going by lies nearer than the search can tell: it fires again
-        // only when its point has sunk further, by more each time.
-        let repeats = f64::from(self.states[id.index()].repeats_at(assembly.now()));
-        let lies_beyond = connector.is_stop() && repeats > 0.0;
-        let slack = if lies_beyond { repeats * assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 };
-        Stop { id, hint, slack: slack.max(slack_of(assembly, &sample)), is_noted: false }
+        Stop { id, hint, slack: self.slack_of(assembly, id), is_noted: false }
     }
-}
 
-/// Distance [m] by which a unilateral connector may sink from where it was measured before it fires: positive only
-/// where it is touched and does not open.
-pub(crate) fn slack_of(assembly: &Assembly, sample: &ConnectorSample) -> f64 {
-    let gap = GapState::of_rope(sample, &assembly.settings().tolerances);
-    let rests = gap.is_touching() && !gap.opens(assembly.rest_speed());
-    if rests { assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 }
+    /// Distance [m] beyond its length, or its stop, at which a unilateral connector fires from now on: positive only
+    /// where it is touched and does not open, or has fired without time going by. That lies nearer than the search can
+    /// tell: it fires again only when it has sunk further, by more each time.
+    pub(crate) fn slack_of(&self, assembly: &Assembly, id: ConnectorId) -> f64 {
+        let sample = self.measure_connector(assembly, id, 0, assembly.now());
+        let gap = GapState::of_rope(&sample, &assembly.settings().tolerances);
+        let rests = gap.is_touching() && !gap.opens(assembly.rest_speed());
+        let times = self.states[id.index()].repeats_at(assembly.now()) + u32::from(rests);
+        if times == 0 { 0.0 } else { f64::from(times) * assembly.sink() + (-sample.gap).max(0.0) }
+    }
 }
 
 /// True for a rope.
