@@ -446,26 +446,37 @@ fn depth(world: &World, a: BodyId, b: BodyId) -> f64 {
 }
 
 /// Energy [J] that counts as rounding: that of a speed at the rounding of coordinates, and the work of weights and
-/// other forces along a distance within the tolerance of a body's size. Where a spring presses on a held body, steps
-/// err by that much and projections take it back, though nothing moves.
+/// other forces along a distance within the tolerance of a body's size, of torques along the angle that goes with it.
+/// Where a spring or a motor presses on a held body, steps err by that much and projections take it back, though
+/// nothing moves.
 fn no_energy(scene: &Scene, world: &World) -> f64 {
     let masses = world.bodies().filter_map(|body| world.inertia(body)).map(|inertia| inertia.mass);
     let reach = world.bodies().filter(|&body| !world.is_fixed(body)).map(|body| world.shape(body).reach());
     let coordinate =
         world.bodies().map(|body| world.state(body).position.abs().max_element() + world.shape(body).reach());
     let speed = coordinate.fold(0.0, f64::max) / scene.run.duration;
-    let lifted = CONNECTOR_TOLERANCES * scene.run.tolerance_or_default() * reach.fold(0.0, f64::max);
+    let turned = CONNECTOR_TOLERANCES * scene.run.tolerance_or_default();
+    let lifted = turned * reach.fold(0.0, f64::max);
     let weight: f64 = scene.forces.iter().map(|force| gravity(&force.data)).sum();
-    masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted) + forces(world) * lifted
+    let (forces, torques) = acting(scene, world);
+    masses.sum::<f64>() * (CONNECTOR_ROUNDINGS * speed * speed + weight * lifted)
+        + forces * lifted
+        + torques * turned
 }
 
-/// Sum of the sizes of the forces [N] of laws on all bodies.
-fn forces(world: &World) -> f64 {
+/// Sums of the sizes of the forces [N] and torques [N m] of laws on all bodies, and of motors.
+fn acting(scene: &Scene, world: &World) -> (f64, f64) {
     let movings: Vec<Moving> = world.bodies().map(|body| Moving::from(&world.state(body))).collect();
     let now = Snapshot::new(world.time(), &movings);
     let mut sums = vec![Wrench::default(); movings.len()];
     world.forces().for_each(|law| law.apply(&now, &mut Wrenches::new(&mut sums)));
-    sums.iter().map(|wrench| wrench.force.length()).sum()
+    let mut forces: f64 = sums.iter().map(|wrench| wrench.force.length()).sum();
+    let mut torques: f64 = sums.iter().map(|wrench| wrench.torque.abs()).sum();
+    for connector in &scene.connectors {
+        let motor = connector.data.joint().and_then(|joint| joint.motor).map_or(0.0, |motor| motor.max);
+        *(if matches!(connector.data, ConnectorData::Pin(_)) { &mut torques } else { &mut forces }) += motor;
+    }
+    (forces, torques)
 }
 
 /// Size of the uniform gravity [m/s^2] of a force; 0 for other forces.

@@ -60,7 +60,7 @@ pub(crate) struct EnergyScales {
     pub(crate) usual: f64,
     /// Work of the forces at the start along a target gap.
     pub(crate) rough: f64,
-    /// Work of the forces within the tolerance of the bodies' sizes, and energy of a speed that is rounding.
+    /// Work of the forces and torques within the tolerance of the bodies' sizes, and energy of a speed that is rounding.
     pub(crate) lost: f64,
     /// Rounding of the correction at the start: velocities that it took away do not become exact zeros.
     pub(crate) left: f64,
@@ -166,7 +166,9 @@ impl World {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BodySpec, ConnectorSpec, Intervention, ToleranceOverrides, WorldBuilder};
+    use crate::{
+        BodySpec, ConnectorSpec, Intervention, JointSpring, Motor, ToleranceOverrides, WorldBuilder,
+    };
     use glam::DVec2;
     use halfgap_collision::{Anchor, BodyId, BodyState, Connector, ConnectorKind};
     use halfgap_geometry::Shape;
@@ -308,6 +310,35 @@ mod tests {
         world.advance_to(1.0, &mut |_| ()).expect("so little of 5 J is rounding");
         assert!(world.monitor.turnover.energy > 4.9, "{:?}", world.monitor.turnover);
         assert!(world.energy().kinetic < 1e-12);
+    }
+
+    #[test]
+    fn what_a_held_torque_does_within_the_tolerance_is_rounding_and_more_is_not() {
+        // Dry friction holds a wheel against a spring, or against a motor: nothing moves.
+        let (torque, tolerance): (f64, f64) = (4.0, 1e-8);
+        let pinned = |on_pin: fn(ConnectorSpec, f64) -> ConnectorSpec, lost: f64| {
+            let settings = WorldSettings { duration: Some(1.0), tolerance, ..WorldSettings::default() };
+            let mut builder = WorldBuilder::new(settings);
+            let shape = Shape::disc(0.5).expect("a fine radius");
+            let body = builder.add(BodySpec::movable("wheel", shape, 1.0, BodyState::default()));
+            let [a, b] = [BodyId::WORLD, body].map(|body| Anchor { body, point: DVec2::ZERO });
+            let pin = Connector::new(ConnectorKind::Pin { a, b }, 0.0).expect("a fine pin");
+            builder.add_connector(on_pin(ConnectorSpec::new(pin), torque).friction(2.0 * torque));
+            let mut world = builder.build().expect("it stands");
+            world.start.energy += lost;
+            world.advance_to(1.0, &mut |_| ())
+        };
+        let spring = |pin: ConnectorSpec, torque: f64| {
+            pin.spring(JointSpring { rest: 1.0, stiffness: torque, damping: 0.0 })
+        };
+        let motor = |pin: ConnectorSpec, torque: f64| pin.motor(Motor { speed: 1.0, max: torque });
+        // Within the angle and far beyond it, in radians.
+        for (angle, is_astray) in [(tolerance, false), (1e3 * tolerance, true)] {
+            for on_pin in [spring, motor as fn(ConnectorSpec, f64) -> ConnectorSpec] {
+                let outcome = pinned(on_pin, torque * angle);
+                assert_eq!(outcome.is_err(), is_astray, "{angle} rad: {outcome:?}");
+            }
+        }
     }
 
     #[test]

@@ -83,7 +83,7 @@ pub(crate) struct Books {
     pub(crate) projections: f64,
     /// Booked change by interventions [J].
     pub(crate) given: f64,
-    /// Sum of the sizes of the works of force laws that have no potential [J].
+    /// Sum of the sizes of the works of force laws that have no potential, of surfaces and of drives [J].
     pub(crate) works: f64,
 }
 
@@ -96,7 +96,8 @@ impl Books {
 
 impl From<&Ledger> for Books {
     fn from(ledger: &Ledger) -> Self {
-        let works = ledger.force_laws.iter().map(|law| law.work.abs()).sum();
+        let of_laws: f64 = ledger.force_laws.iter().map(|law| law.work.abs()).sum();
+        let works = of_laws + ledger.surfaces.abs() + ledger.drives.abs();
         let Ledger { now, start, captures, projections, interventions: given, .. } = *ledger;
         Self { now, start, booked: ledger.booked(), captures, projections, given, works }
     }

@@ -317,7 +317,9 @@ impl RunError {
             Self::Contacts { source, .. } if matches!(**source, SolveError::Infeasible(_)) => {
                 Outcome::Infeasible
             }
-            Self::Impact { source: ImpactError::Infeasible { .. }, .. } => Outcome::Infeasible,
+            Self::Impact { source: ImpactError::Infeasible { .. } | ImpactError::DrawnIn { .. }, .. } => {
+                Outcome::Infeasible
+            }
             Self::Interrupted { .. } => Outcome::Interrupted,
             _ => Outcome::Stuck,
         }

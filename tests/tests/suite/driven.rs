@@ -1,7 +1,7 @@
 //! What acts on the free coordinate of a joint, gears, and connectors that contradict each other.
 
 use halfgap::scene::{Scene, SceneFormat};
-use halfgap::{BodyId, Intervention, World};
+use halfgap::{BodyId, ConnectorId, Intervention, World};
 use halfgap_tests::world_of;
 use std::f64::consts::TAU;
 
@@ -225,4 +225,25 @@ fn connectors_that_contradict_each_other_are_refused_with_both_names() {
     line 10: connector[0].pin.motor.max: must be finite; a motor that holds its speed whatever it takes is a `drive`
     line 10: connector[0].pin.friction_torque: has no effect on a coordinate that is driven: give either this or `drive`
     "#);
+}
+
+#[test]
+fn a_pulley_whose_ends_bounce_lower_than_its_zone_comes_to_hold_them() {
+    // Damping slows the lighter end more than the rope lets it: each bounce is lower than the one before, and soon
+    // lower than the search can tell.
+    let mut world = world_of(
+        "format = \"halfgap-scene-1\"\ntitle = \"t\"\nrun = { duration = 0.5, tolerance = 1e-10 }\n\
+         force = [{ damping = { angular = 0.125, linear = 0.5 } }]\n\
+         [[body]]\nname = \"left\"\nshape = { disc = { radius = 0.2 } }\nmass = 1.33\n\
+         position = [-0.5, -4.263]\nvelocity = [0.0, -0.5537]\n\
+         [[body]]\nname = \"right\"\nshape = { disc = { radius = 0.2 } }\nmass = 0.34\n\
+         position = [0.5, -4.988]\nvelocity = [0.0, -0.4218]\n\
+         [[connector]]\npulley = { a = { body = \"left\", point = [0.0, 0.0] }, \
+         b = { body = \"right\", point = [0.0, 0.0] }, wheel_a = [-0.5, 0.0], wheel_b = [0.5, 0.0], \
+         ratio = 1.29, length = 10.69752, elasticity = 0.033 }\n",
+    );
+    advance(&mut world, 0.5);
+    let (error, impacts) = (world.connector_error(ConnectorId(0)), world.statistics().impacts);
+    assert!(error < 1e-12, "{error} m");
+    assert!(impacts < 10, "{impacts} impacts");
 }

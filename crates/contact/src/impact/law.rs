@@ -86,6 +86,15 @@ pub enum ImpactError {
         /// Residuals of the last impulses.
         residuals: Residuals,
     },
+    /// With friction no impulses exist: something driven or moved draws a body in between others, the harder the more
+    /// it is pressed. Between bodies of finite mass there always are some.
+    #[error(
+        "no impulses keep the rows with friction from closing, none of the {combinations} combinations of modes does: what is driven or moved draws a body in, whatever resists it"
+    )]
+    DrawnIn {
+        /// Number of combinations of modes (open, sticking, slipping either way), all of which were tried.
+        combinations: u64,
+    },
     /// A row still closes, or a bilateral one has a rate, after all attempts.
     #[error("row {row} is left at a rate of {} m/s, beyond the bound of {} m/s", Rounded(*rate), Rounded(*bound))]
     Unfinished {
@@ -108,7 +117,7 @@ impl ImpactError {
             | Self::Immovable { row, .. }
             | Self::Infeasible { row, .. }
             | Self::Unfinished { row, .. } => Some(row),
-            Self::Unsolved { .. } => None,
+            Self::Unsolved { .. } | Self::DrawnIn { .. } => None,
         }
     }
 }

@@ -193,9 +193,8 @@ fn without_friction_the_laws_are_what_they_were() {
     }
 }
 
-#[test]
-fn a_wedge_that_jams_stops() {
-    // A disc between two walls at 20 degrees, rough enough to hold it: restitution cannot open both.
+/// A disc that falls at 1 m/s between two walls at 20 degrees, rough enough to hold it, which run down at a speed [m/s].
+fn wedged(running: f64) -> Impact {
     let mut impact = Impact::new();
     let inertia = [InverseInertia { inverse_mass: 1.0, inverse_moment: 2.0 }, FIXED];
     let tilt = 10.0_f64.to_radians();
@@ -208,11 +207,28 @@ fn a_wedge_that_jams_stops() {
     impact.set_rows(rows);
     for (row, n) in walls.iter().enumerate() {
         let tangent = [-n[1], n[0], -1.0, 0.0, 0.0, 0.0];
-        impact.set_friction(row, FrictionRow::new(tangent, inertia, -n[0], 1.0));
+        impact.set_friction(row, FrictionRow::new(tangent, inertia, -n[0] * (1.0 - running), 1.0));
     }
+    impact
+}
+
+#[test]
+fn a_wedge_that_jams_stops() {
+    // Restitution cannot open both contacts.
+    let mut impact = wedged(0.0);
     ImpactLaw::Simultaneous.resolve(&mut impact, ImpactOrder::Fastest, 0).expect("impulses");
     assert!(impact.rates().iter().all(|rate| *rate >= -impact.bound()), "{:?}", impact.rates());
     assert!(impact.friction_loss() > 0.0);
+}
+
+#[test]
+fn walls_that_draw_a_disc_into_their_wedge_are_told() {
+    // No impulse stops what is driven: faster than the disc, it presses it the deeper in the more it is pressed.
+    let of_contact = 4_u64;
+    for law in LAWS {
+        let error = law.resolve(&mut wedged(3.0), ImpactOrder::Fastest, 0).expect_err("there are none");
+        assert_eq!(error, ImpactError::DrawnIn { combinations: of_contact * of_contact }, "{law:?}");
+    }
 }
 
 #[test]

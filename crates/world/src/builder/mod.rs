@@ -26,7 +26,7 @@ use crate::world_error::{ConnectorName, WorldError};
 pub(crate) use checks::LARGEST;
 use checks::world_bounds;
 use drift::drift;
-use energies::{energy_scales, forces_on, torques_on};
+use energies::{acting_on, energy_scales};
 use glam::DVec2;
 use halfgap_advance::Time;
 use halfgap_advance::rigid::{BodyPart, FreeMotion, PairRule, RigidParts, Scales, Surface};
@@ -302,7 +302,7 @@ impl WorldBuilder {
             let state = |body: BodyId| bodies[body.index()].state;
             energy_of(&named, self.forces.iter(), self.settings.start_time, state, &mut Vec::new()).total()
         };
-        let acting = (forces_on(&bodies, &wrenches), torques_on(&bodies, &wrenches));
+        let acting = acting_on(&bodies, &wrenches, &joints);
         let given = total(&bodies);
         let Corrected { displacement, apart } = correct_start(&mut bodies, &named, &joints, &rules)?;
         warnings.extend(velocity_warning(apart, &tolerances));

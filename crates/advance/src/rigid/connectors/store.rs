@@ -4,9 +4,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::by_body::ByBody;
 use crate::rigid::bodies::instant::is_same_time;
 use crate::time::Time;
-use halfgap_collision::{
-    BodyId, Connector, ConnectorId, ConnectorKind, ConnectorSample, GapState, RailHint, Rope,
-};
+use halfgap_collision::{BodyId, Connector, ConnectorId, ConnectorKind, GapState, RailHint, Rope};
 
 /// All connectors with their states, and lists of them by body.
 #[derive(Clone, Debug)]
@@ -70,11 +68,24 @@ pub(crate) struct ConnectorState {
     pub(super) last_taut: Option<Time>,
     /// Number of times that it did so before without time going by.
     pub(super) repeats: u32,
+    /// If it is unilateral: its row at the last event at whose end it was touched.
+    pub(super) seen: Option<SeenRow>,
     /// True if a group watches it as a stop.
     pub(super) is_watched: bool,
     /// Of a stop that a group watches: the start of the group's segment, and the place of the point there; `None` once
     /// the place that the point has come to is noted.
     pub(super) follow: Option<(Time, RailHint)>,
+}
+
+/// The row of a unilateral connector at the end of an event.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct SeenRow {
+    pub(crate) time: Time,
+    /// Gap [m].
+    pub(crate) gap: f64,
+    /// Rate of the gap [m/s].
+    pub(crate) rate: f64,
 }
 
 impl ConnectorState {
@@ -115,26 +126,22 @@ impl Connectors {
         self.states[id.index()].corner.map_or(self.connector(id).row_count(), |sides| sides.len())
     }
 
-    /// A stop as it is watched along a segment that starts now.
+    /// A unilateral connector as it is watched along a segment that starts now.
     pub(crate) fn stop(&self, assembly: &Assembly, id: ConnectorId) -> Stop {
-        let connector = self.connector(id);
         let hint = self.hint_at(assembly, id, 0, assembly.now());
-        let sample = self.measure_connector(assembly, id, 0, assembly.now());
-        // A stop of a rail that fires again without time going by lies nearer than the search can tell: it fires again
-        // only when its point has sunk further, by more each time.
-        let repeats = f64::from(self.states[id.index()].repeats_at(assembly.now()));
-        let lies_beyond = connector.is_stop() && repeats > 0.0;
-        let slack = if lies_beyond { repeats * assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 };
-        Stop { id, hint, slack: slack.max(slack_of(assembly, &sample)), is_noted: false }
+        Stop { id, hint, slack: self.slack_of(assembly, id), is_noted: false }
     }
-}
 
-/// Distance [m] by which a unilateral connector may sink from where it was measured before it fires: positive only
-/// where it is touched and does not open.
-pub(crate) fn slack_of(assembly: &Assembly, sample: &ConnectorSample) -> f64 {
-    let gap = GapState::of_rope(sample, &assembly.settings().tolerances);
-    let rests = gap.is_touching() && !gap.opens(assembly.rest_speed());
-    if rests { assembly.sink() + (-sample.gap).max(0.0) } else { 0.0 }
+    /// Distance [m] beyond its length, or its stop, at which a unilateral connector fires from now on: positive only
+    /// where it is touched and does not open, or has fired without time going by. That lies nearer than the search can
+    /// tell: it fires again only when it has sunk further, by more each time.
+    pub(crate) fn slack_of(&self, assembly: &Assembly, id: ConnectorId) -> f64 {
+        let sample = self.measure_connector(assembly, id, 0, assembly.now());
+        let gap = GapState::of_rope(&sample, &assembly.settings().tolerances);
+        let rests = gap.is_touching() && !gap.opens(assembly.rest_speed());
+        let times = self.states[id.index()].repeats_at(assembly.now()) + u32::from(rests);
+        if times == 0 { 0.0 } else { f64::from(times) * assembly.sink() + (-sample.gap).max(0.0) }
+    }
 }
 
 /// True for a rope.
@@ -186,6 +193,22 @@ impl Connectors {
     /// Notes whether a unilateral connector is active.
     pub(crate) fn set_active(&mut self, id: ConnectorId, active: bool) {
         self.states[id.index()].active = active;
+    }
+
+    /// Notes the row of a unilateral connector at the end of an event, if it is touched.
+    pub(crate) fn note_seen(&mut self, assembly: &Assembly, id: ConnectorId) {
+        let sample = self.measure_connector(assembly, id, 0, assembly.now());
+        if GapState::of_rope(&sample, &assembly.settings().tolerances).is_touching() {
+            let (gap, rate) = (sample.gap, sample.kinematics.rate);
+            self.states[id.index()].seen = Some(SeenRow { time: assembly.now(), gap, rate });
+        }
+    }
+
+    /// Forgets how the unilateral connectors of a body were seen.
+    pub(crate) fn forget_seen_of(&mut self, body: BodyId) {
+        for id in self.of.of(body) {
+            self.states[id.index()].seen = None;
+        }
     }
 
     /// Notes that a rope has gone taut, or a stop is met, at a time.
@@ -255,6 +278,12 @@ impl ConnectorState {
     #[inline]
     pub(crate) fn corner(&self) -> Option<[RailHint; 2]> {
         self.corner
+    }
+
+    /// If it is unilateral: its row at the last event at whose end it was touched.
+    #[inline]
+    pub(crate) fn seen(&self) -> Option<SeenRow> {
+        self.seen
     }
 
     /// True if it is unilateral and active: its row then takes part in events at any gap.

@@ -1,4 +1,5 @@
-//! Bounces too low to be told from contact: between two events the gap of a feature pair stayed within the target zone.
+//! Bounces too low to be told from contact: between two events the gap of a feature pair, or of a rope or stop, stayed
+//! within the target zone.
 //!
 //! The height of a bounce follows from the opening rate v1 at the event before, the closing rate v2 now, and the time t
 //! between: under a constant acceleration it is v1^2 t / (2 (v1 + v2)). Such a pair meets without elasticity, unless
@@ -13,11 +14,13 @@
 //! gaps: after very many of them in a row the pair meets without elasticity as well.
 
 use crate::rigid::bodies::assembly::Assembly;
+use crate::rigid::connectors::store::{Connectors, SeenRow};
 use crate::rigid::contacts::pairs::{PairId, Pairs};
 use crate::rigid::contacts::table::Seen;
 use crate::rigid::contacts::touch::Touch;
 use crate::rigid::shares::{HUGE, LARGE, MAJOR};
-use halfgap_collision::{Collision, GapState, Tolerances};
+use crate::time::Time;
+use halfgap_collision::{BodyId, Collision, Detector, GapState, Tolerances};
 use halfgap_geometry::FeatureId;
 
 /// Number of low bounces in a row after which elasticity no longer acts.
@@ -59,14 +62,30 @@ fn low_bounces(assembly: &Assembly, seen: &Seen, gap: f64) -> u32 {
 
 /// True if some of the given contacts close fast, and each of these has stayed within the target zone since it was last
 /// seen.
-pub(crate) fn bounces_low(assembly: &Assembly, pairs: &Pairs, records: &[Collision]) -> bool {
+pub(crate) fn bounces_low(
+    assembly: &Assembly,
+    connectors: &Connectors,
+    pairs: &Pairs,
+    records: &[Collision],
+) -> bool {
     let mut fast = records.iter().filter(|record| record.gap_state().rebounds()).peekable();
-    fast.peek().is_some() && fast.all(|record| is_low_bounce(assembly, pairs, record))
+    fast.peek().is_some() && fast.all(|record| is_low_bounce(assembly, connectors, pairs, record))
 }
 
-fn is_low_bounce(assembly: &Assembly, pairs: &Pairs, record: &Collision) -> bool {
+fn is_low_bounce(assembly: &Assembly, connectors: &Connectors, pairs: &Pairs, record: &Collision) -> bool {
+    let (down, tolerances) = (-record.motion.normal_velocity, &record.tolerances);
+    if let Detector::Connector { id, .. } = record.parties.detector {
+        let Some(SeenRow { time, gap, rate }) = connectors.states()[id.index()].seen() else { return false };
+        let is_struck = is_struck_since(assembly, record.bodies(), time);
+        return stayed_low(
+            assembly,
+            &Before { time, gap, rate, is_often_low: false, is_struck },
+            down,
+            tolerances,
+        );
+    }
     let Some((pair, features)) = features_of(pairs, record) else { return false };
-    has_stayed_low(assembly, pairs, pair, features, -record.motion.normal_velocity, &record.tolerances)
+    has_stayed_low(assembly, pairs, pair, features, down, tolerances)
 }
 
 /// True if a contact of a pair has fired although it did not close, and has not left its target gap since.
@@ -96,9 +115,39 @@ pub(crate) fn has_stayed_low(
     pair: PairId,
     features: [FeatureId; 2],
     down: f64,
+    tolerances: &Tolerances,
+) -> bool {
+    let Some(&Seen { time, gap, rate, low, .. }) = pairs.seen(pair, features) else { return false };
+    let is_struck = is_struck_since(assembly, pairs.bodies(pair), time);
+    stayed_low(
+        assembly,
+        &Before { time, gap, rate, is_often_low: low >= MOST_LOW, is_struck },
+        down,
+        tolerances,
+    )
+}
+
+/// State of a pair of features, or of a rope or stop, at the end of the event in which it was seen last.
+struct Before {
+    time: Time,
+    /// Gap [m].
+    gap: f64,
+    /// Rate of the gap [m/s].
+    rate: f64,
+    /// It has bounced low very many times in a row.
+    is_often_low: bool,
+    /// An impulse has changed the velocity of one of its bodies since: then it need not have been turned back by
+    /// forces.
+    is_struck: bool,
+}
+
+/// True if what closes with a speed `down` [m/s] has stayed within the target zone since it was last seen.
+fn stayed_low(
+    assembly: &Assembly,
+    seen: &Before,
+    down: f64,
     &Tolerances { target_gap, accuracy, velocity_tol }: &Tolerances,
 ) -> bool {
-    let Some(seen) = pairs.seen(pair, features) else { return false };
     // A pair that closed fast then has not been stopped since.
     if seen.rate < -velocity_tol {
         return false;
@@ -106,7 +155,7 @@ pub(crate) fn has_stayed_low(
     let up = seen.rate.max(0.0);
     let lasted = assembly.now().since(seen.time);
     let rise = 0.5 * up * up * lasted / (up + down);
-    let most = if seen.low >= MOST_LOW { LARGE * target_gap } else { target_gap + accuracy };
+    let most = if seen.is_often_low { LARGE * target_gap } else { target_gap + accuracy };
     // A pair that moved under a constant acceleration is back where it was (`went` is small). Else, as when
     // something has lifted it in between, it has stayed only if it is no faster than forces make it within the
     // zone. With contacts that carry impulses only it would then sink, so there only `went` counts.
@@ -118,18 +167,14 @@ pub(crate) fn has_stayed_low(
     // Forces may press bodies together with many times the scene's acceleration. A pair of which a body was struck, as in a
     // deep heap, must be slower: else the energy of a blow is lost, which an elastic body passes on and gets back at once.
     let is_low = || {
-        if is_struck_since(assembly, pairs, pair, seen) {
-            forced(MAJOR)
-        } else {
-            went <= most || forced(HUGE)
-        }
+        if seen.is_struck { forced(MAJOR) } else { went <= most || forced(HUGE) }
     };
     seen.gap + rise <= most && is_low()
 }
 
-/// True if an impulse has changed the velocity of a body of a pair since its contact was last seen: then the pair
-/// need not have been turned back by forces.
-fn is_struck_since(assembly: &Assembly, pairs: &Pairs, pair: PairId, seen: &Seen) -> bool {
-    let strikes = pairs.bodies(pair).into_iter().filter_map(|body| assembly.struck()[body.index()]);
-    strikes.into_iter().any(|strike| strike > seen.time)
+/// True if an impulse has changed the velocity of one of two bodies since a time.
+fn is_struck_since(assembly: &Assembly, bodies: [BodyId; 2], time: Time) -> bool {
+    let movable = bodies.into_iter().filter(|body| !body.is_world());
+    let strikes = movable.filter_map(|body| assembly.struck()[body.index()]);
+    strikes.into_iter().any(|strike| strike > time)
 }

@@ -58,7 +58,7 @@ pub(crate) fn go_on(rooms: &mut Rooms, work: &mut EventWork) -> Result<(), Advan
         rooms.searching().renew_stay(body);
     }
     rooms.searching().predict_all_of(work.region.bodies(), true);
-    note_active_connectors(&mut rooms.connectors, &work.region, &work.settling);
+    note_unilateral_connectors(&rooms.assembly, &mut rooms.connectors, &work.region, &work.settling);
     rooms.searching().predict_ropes(work.region.bodies());
     Ok(())
 }
@@ -80,8 +80,13 @@ fn note_gaps(assembly: &Assembly, books: &mut Books, region: &Region) {
     }
 }
 
-/// Notes which unilateral connectors of a region are active from now on.
-fn note_active_connectors(connectors: &mut Connectors, region: &Region, settling: &Settling) {
+/// Notes which unilateral connectors of a region are active from now on, and the rows of those that are touched.
+fn note_unilateral_connectors(
+    assembly: &Assembly,
+    connectors: &mut Connectors,
+    region: &Region,
+    settling: &Settling,
+) {
     for &body in region.bodies() {
         for index in 0..connectors.of(body).len() {
             let id = connectors.of(body)[index];
@@ -89,6 +94,9 @@ fn note_active_connectors(connectors: &mut Connectors, region: &Region, settling
                 let mut active = settling.active().iter();
                 let is_active = active.any(|(_, row)| row.source == RowSource::Connector(id, 0));
                 connectors.set_active(id, is_active);
+            }
+            if connectors.connector(id).is_unilateral() {
+                connectors.note_seen(assembly, id);
             }
         }
     }

@@ -5,6 +5,7 @@ use crate::rigid::bodies::assembly::Assembly;
 use crate::rigid::bodies::force_law::{ForceLaw, Snapshot};
 use crate::rigid::books::all::Books;
 use crate::rigid::books::energy::{book_damping, interrupt};
+use crate::rigid::connectors::store::Connectors;
 use crate::rigid::contacts::pairs::Pairs;
 use crate::rigid::error::AdvanceError;
 use crate::rigid::event::cutting::cut_groups;
@@ -95,7 +96,7 @@ fn restart(
     cut_groups(rooms, &mut work.region);
     take_back_cut(&mut rooms.assembly, &mut rooms.books, &work.seeds, &work.before);
     act(&mut rooms.assembly, &mut rooms.books);
-    forget_past(&mut rooms.pairs, &mut rooms.zeno, work);
+    forget_past(&mut rooms.connectors, &mut rooms.pairs, &mut rooms.zeno, work);
     // Velocities and laws decide which contacts take part and what moves together, and they have changed.
     collect_again(rooms, work);
     collide(rooms, work)
@@ -141,10 +142,11 @@ fn work_of(assembly: &Assembly, body: BodyId, before: &BodyState, change: &Veloc
 
 /// Forgets the past events of a region's bodies: impacts that follow are neither an accumulation nor bounces that have
 /// become low.
-fn forget_past(pairs: &mut Pairs, zeno: &mut Zeno, work: &EventWork) {
+fn forget_past(connectors: &mut Connectors, pairs: &mut Pairs, zeno: &mut Zeno, work: &EventWork) {
     for &body in work.region.bodies() {
         zeno.forget_events(body);
         pairs.forget_seen_of(body);
+        connectors.forget_seen_of(body);
     }
     forget_paces(zeno, work.region.bodies());
 }

@@ -62,7 +62,7 @@ pub(crate) fn set_rows(
     impact: &mut Impact,
 ) {
     let dull = assembly.settings().impulse_step.is_none()
-        && bounces_low(assembly, pairs, region.records())
+        && bounces_low(assembly, connectors, pairs, region.records())
         && assembly.remedies().act(Remedy::LowBounces);
     let rows = region.records().iter().map(|record| {
         let row = row_of(assembly, record);

@@ -2,7 +2,7 @@
 
 use crate::rigid::agenda::Source;
 use crate::rigid::bodies::path::Path;
-use crate::rigid::connectors::store::{rope_of, slack_of};
+use crate::rigid::connectors::store::rope_of;
 use crate::rigid::search::dead_point::{dead_point_slack, rope_is_near_dead_point};
 use crate::rigid::search::predictions::LONGEST_SPAN;
 use crate::rigid::search::searching::Searching;
@@ -13,23 +13,13 @@ use halfgap_collision::{BodyId, ConnectorId, Flight, Motion, MotionBounds, Rope,
 impl Searching<'_> {
     /// Predicts when the ropes of some bodies go taut.
     pub(crate) fn predict_ropes(&mut self, bodies: &[BodyId]) {
-        let sink = self.assembly.sink();
         for &body in bodies {
             for index in 0..self.connectors.of(body).len() {
                 let id = self.connectors.of(body)[index];
                 let Some(rope) = rope_of(self.connectors.connector(id)) else { continue };
-                let [a, b] = self
-                    .connectors
-                    .connector(id)
-                    .bodies()
-                    .map(|body| self.assembly.moving_at(body, self.assembly.now()));
-                let sample = self.connectors.connector(id).measure(0, &a, &b);
-                let slack = slack_of(self.assembly, &sample);
-                let state = &self.connectors.states()[id.index()];
-                let (now, taut) = (self.assembly.now(), state.taut());
-                let slack = slack + f64::from(state.repeats_at(now)) * sink;
-                self.connectors.set_slack(id, slack);
-                self.connectors.set_taut(id, now, taut);
+                let taut = self.connectors.states()[id.index()].taut();
+                self.connectors.set_slack(id, self.connectors.slack_of(self.assembly, id));
+                self.connectors.set_taut(id, self.assembly.now(), taut);
                 self.predict_rope(id, &rope);
             }
         }

@@ -240,6 +240,7 @@ fn error_of(error: &SolveError, problem: &Problem, rows: usize) -> ImpactError {
             let scale = problem.offset().iter().fold(0.0, |most: f64, b| most.max(b.abs()));
             ImpactError::Infeasible { row: proof.row, contradiction: proof.contradiction * scale }
         }
+        &SolveError::NoModes { combinations } => ImpactError::DrawnIn { combinations },
         SolveError::Unsolved { residuals, .. } => ImpactError::Unsolved { rows, residuals: *residuals },
         _ => unsolved(rows),
     }
