@@ -53,6 +53,18 @@ impl EdgeSpec {
         }
     }
 
+    /// The same edge, moved by a shift [m].
+    #[must_use]
+    pub fn translated(&self, shift: DVec2) -> Self {
+        match *self {
+            Self::Line { to } => Self::Line { to: to + shift },
+            Self::Arc { to, center, clockwise } => {
+                Self::Arc { to: to + shift, center: center + shift, clockwise }
+            }
+            Self::Bulge { to, bulge } => Self::Bulge { to: to + shift, bulge },
+        }
+    }
+
     /// Center and radius [m] of an arc of half a turn or more that starts at `from`; `None` for other edges.
     pub(crate) fn major_circle(&self, from: DVec2) -> Option<(DVec2, f64)> {
         let chord = self.to() - from;

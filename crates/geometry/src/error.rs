@@ -1,5 +1,6 @@
 //! Errors of building an edge or a shape.
 
+use crate::fit::FitError;
 use crate::rounded::{Rounded, RoundedPlace};
 
 /// Reason why a straight edge could not be built.
@@ -98,6 +99,51 @@ pub enum ShapeError {
         /// Largest permitted angle [rad].
         limit: f64,
     },
+    /// A ready-made shape has too few teeth or slots.
+    #[error("{name} must be at least {least}, got {count}")]
+    TooFew {
+        /// What there is too few of.
+        name: &'static str,
+        /// Their number.
+        count: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// A cam's lift is another after a turn.
+    #[error("the lift is another after a turn, by {} m: it must come back to where it began", Rounded(*by))]
+    LiftJumps {
+        /// Difference [m].
+        by: f64,
+    },
+    /// A cam's lift has another slope after a turn.
+    #[error(
+        "the lift has a corner where a turn ends: its slope must be the same there (`periodic = true` for tables)"
+    )]
+    LiftHasCorner,
+    /// A cam's lift pulls its roller over the axis.
+    #[error("at {} rad the lift pulls the roller over the axis", RoundedPlace(*angle))]
+    CamTooDeep {
+        /// Angle on the cam [rad].
+        angle: f64,
+    },
+    /// A cam's lift bends more than its roller can follow.
+    #[error(
+        "at {} rad the way of the roller's center bends with a radius of {} m, which the roller of {roller} m cannot follow: \
+         take a smaller roller or a larger base",
+        RoundedPlace(*angle),
+        Rounded(*radius)
+    )]
+    Undercut {
+        /// Angle on the cam [rad].
+        angle: f64,
+        /// Radius of curvature of the way of the roller's center [m].
+        radius: f64,
+        /// Radius of the roller [m].
+        roller: f64,
+    },
+    /// A curve of a ready-made shape cannot be followed by arcs.
+    #[error(transparent)]
+    Fit(#[from] FitError),
     /// A polygon has fewer than three vertices.
     #[error("a polygon needs at least 3 vertices, got {0}")]
     TooFewVertices(usize),

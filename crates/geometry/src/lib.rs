@@ -16,7 +16,8 @@
 //! `pose` places a body, by the `sine` of its angle; `line`, `arc` and `edge` are the edges, `crossing` and
 //! `edge_distance` the common points and the distance of two edges; `path` chains edges, `outline` orients paths,
 //! `simple` refuses paths that meet, `mass` integrates over their inside; `shape` bundles outline, features and tree,
-//! `pool` keeps equal shapes once; `build` and `build_mechanism` are the ready-made shapes. `feature` and `gap`
+//! `pool` keeps equal shapes once; `build`, `build_mechanism`, `build_gear`, `build_wheel` and `build_cam` are the ready-made shapes, `fit`
+//! makes arcs of curves. `feature` and `gap`
 //! measure how far apart two features are; `tree` finds the features near a place. The queries on shapes are
 //! `inside`, `nearest`, `ray`, `distance` (of two shapes), `bounds` and `swept` (boxes).
 //!
@@ -38,7 +39,10 @@
 mod arc;
 mod bounds;
 mod build;
+mod build_cam;
+mod build_gear;
 mod build_mechanism;
+mod build_wheel;
 mod crossing;
 mod distance;
 mod edge;
@@ -46,6 +50,7 @@ mod edge_distance;
 mod edge_spec;
 mod error;
 mod feature;
+mod fit;
 mod gap;
 mod inside;
 mod line;
@@ -67,6 +72,9 @@ mod tree;
 
 pub use arc::Arc;
 pub use bounds::Aabb;
+pub use build_cam::Lift;
+pub use build_gear::Teeth;
+pub use build_wheel::{GenevaWheel, Lean};
 pub use crossing::edge_crossings;
 pub use distance::{Relation, ShapeDistance};
 pub use edge::Edge;
@@ -76,6 +84,7 @@ pub use error::{ArcError, EdgeError, LineError, ShapeError};
 pub use feature::{
     DirectionRange, EdgeId, Feature, FeatureId, FeatureKind, FeatureSource, LineFeature, RoundFeature,
 };
+pub use fit::{CurvePoint, FitError, fit_arcs};
 pub use gap::{CenterGap, GapKind, GapSample, LineGap, PairKind, pair_kind, touching_distance};
 pub use glam::DVec2;
 pub use line::Line;
