@@ -12,6 +12,7 @@ mod heaps;
 mod impacts;
 mod language;
 mod laws;
+mod machine_shapes;
 mod mechanisms;
 mod mirror;
 mod moved;

@@ -1,8 +1,8 @@
 //! The connectors of a scene.
 
 use super::bodies::Bodies;
-use super::edge_spec;
 use super::force::anchor;
+use super::shape::edge_spec;
 use crate::builder::WorldBuilder;
 use crate::connector::{ConnectorSpec, JointSpring, Limits, Motor, OnCoordinate};
 use crate::scene::{

@@ -1,23 +1,23 @@
-//! Building a world from a scene: its bodies here (`bodies` finds them by name), the rest in `settings`, `force` and
-//! `connector`; `hints` tells what the author may not have meant.
+//! Building a world from a scene: its bodies here (`bodies` finds them by name), the rest in `settings`, `shape`,
+//! `force` and `connector`; `hints` tells what the author may not have meant.
 
 mod bodies;
 mod connector;
 mod force;
 mod hints;
 pub(crate) mod settings;
+mod shape;
 
 use self::bodies::Bodies;
+use self::shape::build_shape;
 use crate::builder::{BodySpec, WorldBuilder};
 use crate::run_error::RunError;
-use crate::scene::{
-    BodyData, EdgeData, FieldPath, ForceData, MotionData, PairData, PathData, Scene, SceneError, ShapeData,
-};
+use crate::scene::{BodyData, FieldPath, ForceData, MotionData, PairData, Scene, SceneError};
 use crate::world::{Inertia, World};
 use crate::world_error::{ConnectorName, WorldError};
 use halfgap_advance::rigid::{PairRule, Surface};
 use halfgap_collision::{BodyId, BodyState};
-use halfgap_geometry::{EdgeSpec, PathSpec, Shape, ShapeError};
+use halfgap_geometry::{Shape, ShapeError};
 
 impl World {
     /// Builds the world of a scene.
@@ -156,36 +156,6 @@ fn body_spec(body: &BodyData) -> Result<BodySpec, ShapeError> {
 /// Mass of a body [kg], given or from its density; a fixed body may have none.
 fn mass(body: &BodyData, shape: &Shape) -> Option<f64> {
     body.mass.or_else(|| body.density.map(|density| density * shape.mass_properties().area))
-}
-
-fn build_shape(shape: &ShapeData) -> Result<Shape, ShapeError> {
-    match shape {
-        ShapeData::Disc(disc) => Shape::disc(disc.radius),
-        ShapeData::Block(block) => Shape::block(block.width, block.height),
-        ShapeData::RoundedBlock(block) => Shape::rounded_block(block.width, block.height, block.radius),
-        ShapeData::Polygon(polygon) => {
-            let vertices: Vec<_> = polygon.vertices.iter().map(|&vertex| vertex.into()).collect();
-            Shape::polygon(&vertices)
-        }
-        ShapeData::Ring(ring) => Shape::ring(ring.outer, ring.inner),
-        ShapeData::Outline(outline) => {
-            let paths: Vec<_> = outline.paths.iter().map(path_spec).collect();
-            Shape::from_paths(&paths)
-        }
-    }
-}
-
-fn path_spec(path: &PathData) -> PathSpec {
-    PathSpec { start: path.start.into(), edges: path.edges.iter().map(edge_spec).collect() }
-}
-
-fn edge_spec(edge: &EdgeData) -> EdgeSpec {
-    match edge {
-        EdgeData::Line(to) => EdgeSpec::Line { to: (*to).into() },
-        EdgeData::Arc(arc) => {
-            EdgeSpec::Arc { to: arc.to.into(), center: arc.center.into(), clockwise: arc.clockwise }
-        }
-    }
 }
 
 /// Returns the error of a world as that of the field to blame.

@@ -13,6 +13,7 @@ mod field_path;
 mod force;
 mod language;
 mod locate;
+mod machine_shape;
 mod motion;
 mod named;
 mod nearest;
@@ -39,6 +40,9 @@ pub use field_path::{BadFieldPath, FieldPath, Step};
 pub use force::{
     ConstantData, DampingData, ForceData, GravityData, MutualGravityData, PushData, RotatingData, SineData,
     SpringData, TableData, TorsionSpringData, VaryData,
+};
+pub use machine_shape::{
+    CamData, CapsuleData, GearShapeData, GenevaData, LeanData, RackBarData, RatchetData, RegularData,
 };
 pub use motion::{BodyTableData, DriveData, MotionData, OscillateBodyData, OscillateData, ValueTableData};
 pub use named::NamedData;

@@ -1,5 +1,8 @@
 //! Shapes in a scene file, in shape coordinates.
 
+use super::machine_shape::{
+    CamData, CapsuleData, GearShapeData, GenevaData, RackBarData, RatchetData, RegularData,
+};
 use super::one_key::one_key_enum;
 use super::vector::Vector;
 use serde::Deserialize;
@@ -17,6 +20,20 @@ one_key_enum! {
         "polygon" => Polygon(PolygonData),
         /// The ring between two circles about the origin.
         "ring" => Ring(RingData),
+        /// Two half circles joined by straight edges, along x.
+        "capsule" => Capsule(CapsuleData),
+        /// A regular polygon.
+        "regular" => Regular(RegularData),
+        /// An involute spur wheel.
+        "gear" => Gear(GearShapeData),
+        /// A rack for such wheels.
+        "rack_bar" => RackBar(RackBarData),
+        /// A ratchet wheel.
+        "ratchet" => Ratchet(RatchetData),
+        /// The wheel of a Geneva drive.
+        "geneva" => Geneva(GenevaData),
+        /// A cam for a radial follower with a roller.
+        "cam" => Cam(CamData),
         /// Closed paths; points that an odd number of them surrounds are solid.
         "outline" => Outline(OutlineData),
     }

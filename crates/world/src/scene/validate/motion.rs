@@ -36,6 +36,25 @@ pub(super) fn validate(
 
 /// Checks the motion of a driven coordinate.
 pub(super) fn validate_drive(drive: &DriveData, run: &RunData, at: &At<'_>) -> Result<(), SceneError> {
+    validate_law(drive, at)?;
+    let DriveData::Table(table) = drive else { return Ok(()) };
+    cover(&table.times, table.periodic, run, &at.field(drive.key()))
+}
+
+/// Checks the lift of a cam, whose time is the share of a turn.
+pub(super) fn validate_lift(lift: &DriveData, at: &At<'_>) -> Result<(), SceneError> {
+    validate_law(lift, at)?;
+    let DriveData::Table(table) = lift else { return Ok(()) };
+    let (Some(&first), Some(&last)) = (table.times.first(), table.times.last()) else { return Ok(()) };
+    if table.periodic || (first <= 0.0 && 1.0 <= last) {
+        return Ok(());
+    }
+    let message = format!("go from {first} to {last}, but a turn from 0 to 1");
+    Err(at.field(lift.key()).field("times").error(message))
+}
+
+/// Checks the numbers of a motion, and that they make a law.
+fn validate_law(drive: &DriveData, at: &At<'_>) -> Result<(), SceneError> {
     let at = at.field(drive.key());
     match drive {
         DriveData::Speed(speed) => at.finite(*speed),
@@ -47,8 +66,7 @@ pub(super) fn validate_drive(drive: &DriveData, run: &RunData, at: &At<'_>) -> R
         DriveData::Table(table) => {
             validate_numbers(&table.times, &at.field("times"))?;
             validate_numbers(&table.values, &at.field("values"))?;
-            drive.to_law().map_err(|bad| no_law(bad, &at))?;
-            cover(&table.times, table.periodic, run, &at)
+            drive.to_law().map(|_| ()).map_err(|bad| no_law(bad, &at))
         }
     }
 }

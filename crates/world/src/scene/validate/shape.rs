@@ -1,6 +1,7 @@
 //! Checks the numbers of shapes and paths; the geometry crate checks whether outlines close and cross.
 
-use super::{At, each};
+use super::motion::validate_lift;
+use super::{At, each, optional};
 use crate::scene::error::SceneError;
 use crate::scene::{EdgeData, OutlineData, PathData, RingData, RoundedBlockData, ShapeData, Vector};
 
@@ -12,8 +13,52 @@ pub(super) fn validate(shape: &ShapeData, at: &At<'_>) -> Result<(), SceneError>
         ShapeData::RoundedBlock(block) => validate_rounded_block(block, &at),
         ShapeData::Polygon(polygon) => validate_points(&polygon.vertices, 3, &at.field("vertices")),
         ShapeData::Ring(ring) => validate_ring(ring, &at),
+        ShapeData::Capsule(capsule) => {
+            at.field("length").length(capsule.length)?;
+            at.field("radius").length(capsule.radius)
+        }
+        ShapeData::Regular(regular) => {
+            validate_count(regular.sides, 3, &at.field("sides"))?;
+            at.field("radius").length(regular.radius)
+        }
+        ShapeData::Gear(gear) => {
+            validate_count(gear.teeth, 3, &at.field("teeth"))?;
+            at.field("module").length(gear.module)
+        }
+        ShapeData::RackBar(rack) => {
+            validate_count(rack.teeth, 1, &at.field("teeth"))?;
+            at.field("module").length(rack.module)
+        }
+        ShapeData::Ratchet(ratchet) => {
+            validate_count(ratchet.teeth, 3, &at.field("teeth"))?;
+            at.field("outer").length(ratchet.outer)?;
+            at.field("inner").length(ratchet.inner)?;
+            at.field("inner").below(ratchet.inner, ratchet.outer, "outer", "m")
+        }
+        ShapeData::Geneva(geneva) => {
+            validate_count(geneva.slots, 3, &at.field("slots"))?;
+            at.field("center_distance").length(geneva.center_distance)?;
+            at.field("pin_radius").length(geneva.pin_radius)?;
+            at.field("clearance").not_negative(geneva.clearance, "m")
+        }
+        ShapeData::Cam(cam) => {
+            at.field("base").length(cam.base)?;
+            at.field("roller").length(cam.roller)?;
+            optional(cam.tolerance, |tolerance| at.field("tolerance").length(tolerance))?;
+            validate_lift(&cam.lift, &at.field("lift"))
+        }
         ShapeData::Outline(outline) => validate_outline(outline, &at),
     }
+}
+
+/// Refuses fewer teeth, slots or sides than a shape has, and so many that its edges, ten a tooth, would be more than the
+/// elements of a scene.
+fn validate_count(count: usize, least: usize, at: &At<'_>) -> Result<(), SceneError> {
+    const MOST: usize = 100_000;
+    if (least..=MOST).contains(&count) {
+        return Ok(());
+    }
+    Err(at.error(format!("must lie between {least} and {MOST}, got {count}")))
 }
 
 fn validate_sides(width: f64, height: f64, at: &At<'_>) -> Result<(), SceneError> {
