@@ -274,8 +274,14 @@ pub(super) fn field_path(path: &serde_path_to_error::Path) -> FieldPath {
 
 /// Replaces serde's names of types by those that authors of scenes know.
 pub(super) fn plain(message: &str) -> String {
+    let is_text = message.starts_with("invalid type: string");
+    let number = if is_text {
+        "expected a number, or an expression that begins with `=`"
+    } else {
+        "expected a number"
+    };
     with_nearest(message.trim_end())
-        .replace("expected f64", "expected a number")
+        .replace("expected f64", number)
         .replace("expected u64", "expected a whole number that is not negative")
         .replace("expected a sequence", "expected an array")
         .replace("invalid type: map", "invalid type: table")

@@ -68,7 +68,7 @@ fn errors_name_the_expression_and_what_the_names_stand_for() {
     insta::assert_snapshot!(message(r#""= pitch*i""#, r#""= pich*i""#), @"line 14: body[0].position[0]: in `= pich*i`: there is no `pich` in `[let]` (did you mean `pitch`?) (with i = 0, j = 0)");
     insta::assert_snapshot!(message("disc 0 {i}", "disc {i} {i}!"), @r#"line 22: connector[0].rod.a.body: there is no body named "disc 0 0!" (did you mean "disc 0 0"?) (with i = 0)"#);
     insta::assert_snapshot!(message("width = 10.0", r#"width = "= -r""#), @"line 18: body[1].shape.block.width: must be positive, got -0.125 m (from `= -r`)");
-    insta::assert_snapshot!(message("width = 10.0", r#"width = "wide""#), @r#"line 18: body[1].shape.block.width: invalid type: string "wide", expected a number"#);
+    insta::assert_snapshot!(message("width = 10.0", r#"width = "wide""#), @r#"line 18: body[1].shape.block.width: invalid type: string "wide", expected a number, or an expression that begins with `=`"#);
 }
 
 #[test]
@@ -79,6 +79,7 @@ fn errors_of_names_are_at_the_names() {
     insta::assert_snapshot!(message("n = 4", "\"2n\" = 4"), @"line 4: let.2n: a name has letters a to z, digits and `_`, no digit first");
     insta::assert_snapshot!(message("n = 4", "n = 4\ni = 3"), @"line 11: body[0].repeat.i: `i` is a name in `[let]`: take another name");
     insta::assert_snapshot!(message("repeat = { i = [0, \"= n - 1\"]", "repeat = { i = [0, 1.5]"), @"line 10: body[0].repeat.i[1]: must be a whole number, got 1.5");
+    insta::assert_snapshot!(message("i = [0, 1] }\nrod", "i = 10 }\nrod"), @"line 21: connector[0].repeat.i: must be [first, last], both included, got integer `10`");
     insta::assert_snapshot!(message("n = 4", "n = 1e6"), @"line 10: body[0].repeat: a scene has at most 1000000 bodies, connectors, forces, pairs and probes together");
 }
 
@@ -114,6 +115,23 @@ fn a_fault_of_the_world_is_led_back_to_the_repeated_element() {
     let scene = source.parse().expect("all numbers are fine");
     let error = World::from_scene(&scene).map(|_| ()).expect_err("the discs overlap");
     insta::assert_snapshot!(source.locate(error), @r#"line 14: body[0].position: bodies "disc 0 0" and "disc 0 1" overlap by 0.1 m at the start; at most 3e-7 m are allowed (with i = 0, j = 1)"#);
+}
+
+#[test]
+fn braces_hold_expressions_so_that_neighbours_can_be_tied() {
+    let rods = r#"repeat = { i = [0, 1] }
+rod = { a = { body = "disc {i} {n-3}", point = [0, 0] }, b = { body = "disc {i + 1} 1", point = [0, 0] }, length = "= pitch" }
+"#;
+    let rope = &ROW[ROW.find("repeat = { i = [0, 1] }").expect("it is there")..];
+    let scene = parsed(rope, rods).expect("a good scene");
+    let halfgap::scene::ConnectorData::Rod(rod) = &scene.connectors[1].data else { panic!("it is a rod") };
+    assert_eq!((rod.a.body.as_str(), rod.b.body.as_str()), ("disc 1 1", "disc 2 1"));
+    insta::assert_snapshot!(message("disc 0 {i}", "disc 0 {k}"), @"line 22: connector[0].rod.a.body: in `{k}`: there is no `k` in `[let]` (did you mean `n`?) (with i = 0)");
+    insta::assert_snapshot!(message("disc 0 {i}", "disc 0 {i/2}"), @"line 22: connector[0].rod.a.body: in `{i/2}`: must be a whole number, got 0.5 (with i = 1)");
+    assert_eq!(
+        parsed("A row of discs", "A {row").expect("titles are not repeated").title,
+        "A {row, two high"
+    );
 }
 
 #[test]

@@ -38,9 +38,10 @@ const FUNCTIONS: [(&str, Function); 12] = [
     ("exp", libm::exp),
     ("ln", libm::log),
 ];
-/// Functions of two numbers; the first two take more.
-const OF_TWO: [(&str, fn(f64, f64) -> f64); 3] =
-    [("min", f64::min), ("max", f64::max), ("atan2", libm::atan2)];
+/// A function of two numbers.
+type OfTwo = fn(f64, f64) -> f64;
+/// The first two take more.
+const OF_TWO: [(&str, OfTwo); 3] = [("min", f64::min), ("max", f64::max), ("atan2", libm::atan2)];
 const OF_MANY: [&str; 2] = ["min", "max"];
 
 /// Values of names: `None` if there is no such name, an error if it has no value.

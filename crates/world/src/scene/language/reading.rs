@@ -5,7 +5,7 @@
 //! a struct's fields in their order, and name types of this program.
 
 use super::Expansion;
-use super::expression::{evaluate, expression_in};
+use super::expression::expression_in;
 use super::lets::{LET, Lets, in_expression};
 use super::repeat::{Bindings, LISTS, REPEAT, Run};
 use super::tree::Tree;
@@ -22,13 +22,7 @@ struct Scope<'t> {
 
 impl Scope<'_> {
     fn value(self, text: &str) -> Result<f64, Error> {
-        let Self { lets, bindings } = self;
-        let mut lookup = |name: &str| {
-            let bound = bindings.get(name).map(|number| number as f64);
-            bound.or_else(|| lets.get(name)).map(Ok)
-        };
-        let known: Vec<&str> = lets.names().chain(bindings.all().map(|(name, _)| name)).collect();
-        evaluate(text, &mut lookup, &known).map_err(|why| Error::custom(in_expression(text, &why)))
+        self.bindings.value(text, self.lets).map_err(|why| Error::custom(in_expression(text, &why)))
     }
 }
 
@@ -93,7 +87,7 @@ impl<'de> Deserializer<'de> for Reading<'_> {
 
     fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         let Tree::Text(text) = self.tree else { return self.deserialize_any(visitor) };
-        match self.scope.bindings.fill(text) {
+        match self.scope.bindings.fill(text, self.scope.lets).map_err(Error::custom)? {
             Some(text) => visitor.visit_string(text),
             None => visitor.visit_str(text),
         }

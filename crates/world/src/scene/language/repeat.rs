@@ -76,15 +76,38 @@ impl<'t> Bindings<'t> {
         self.ranges.is_empty()
     }
 
-    /// A text with each `{name}` replaced by its number.
-    pub(super) fn fill(self, text: &str) -> Option<String> {
+    /// A text in which each `{expression}` is replaced by its whole number; `None` if it is the same.
+    ///
+    /// # Errors
+    /// Says which expression has none.
+    pub(super) fn fill(self, text: &str, lets: &Lets) -> Result<Option<String>, String> {
         if self.is_empty() || !text.contains('{') {
-            return None;
+            return Ok(None);
         }
-        let fill = |text: String, (name, number): (&str, i64)| {
-            text.replace(&format!("{{{name}}}"), &number.to_string())
+        let (mut filled, mut rest) = (String::new(), text);
+        while let Some((before, after)) = rest.split_once('{') {
+            let Some((expression, after)) = after.split_once('}') else { break };
+            let value = self.value(expression, lets).and_then(nearest_whole);
+            let number = value.map_err(|why| format!("in `{{{expression}}}`: {why}"))?;
+            filled.push_str(before);
+            filled.push_str(&number.to_string());
+            rest = after;
+        }
+        filled.push_str(rest);
+        Ok(Some(filled))
+    }
+
+    /// The value of an expression in these names and those of `[let]`.
+    ///
+    /// # Errors
+    /// Says what is wrong with it.
+    pub(super) fn value(self, expression: &str, lets: &Lets) -> Result<f64, String> {
+        let mut lookup = |name: &str| {
+            let bound = self.get(name).map(|number| number as f64);
+            bound.or_else(|| lets.get(name)).map(Ok)
         };
-        Some(self.all().fold(text.to_owned(), fill))
+        let known: Vec<&str> = lets.names().chain(self.all().map(|(name, _)| name)).collect();
+        evaluate(expression, &mut lookup, &known)
     }
 }
 
@@ -151,8 +174,10 @@ fn range_of(name: &str, bounds: &Tree, lets: &Lets) -> Result<Range, (Option<usi
         let place = if is_taken(name) { "part of the language" } else { "a name in `[let]`" };
         return Err((None, format!("`{name}` is {place}: take another name")));
     }
-    let Tree::Array(ends) = bounds else { return Err(fail("must be [first, last], both included")) };
-    let [first, last] = ends.as_slice() else { return Err(fail("must be [first, last], both included")) };
+    let ends = if let Tree::Array(ends) = bounds { ends.as_slice() } else { &[] };
+    let [first, last] = ends else {
+        return Err((None, format!("must be [first, last], both included, got {}", bounds.unexpected())));
+    };
     let from = whole(first, lets).map_err(|why| (Some(0), why))?;
     let to = whole(last, lets).map_err(|why| (Some(1), why))?;
     let count = u64::try_from(to - from + 1).map_err(|_| {
@@ -169,15 +194,15 @@ fn range_of(name: &str, bounds: &Tree, lets: &Lets) -> Result<Range, (Option<usi
 /// The whole number that a bound is.
 fn whole(bound: &Tree, lets: &Lets) -> Result<i64, String> {
     let number = match bound.text().and_then(expression_in) {
-        Some(text) => {
-            let names: Vec<&str> = lets.names().collect();
-            evaluate(text, &mut |name| lets.get(name).map(Ok), &names)
-                .map_err(|why| in_expression(text, &why))?
-        }
+        Some(text) => Bindings::default().value(text, lets).map_err(|why| in_expression(text, &why))?,
         None => {
             bound.number().ok_or_else(|| format!("must be a whole number, got {}", bound.unexpected()))?
         }
     };
+    nearest_whole(number)
+}
+
+fn nearest_whole(number: f64) -> Result<i64, String> {
     let nearest = number.round();
     let is_whole = (number - nearest).abs() <= WHOLE && nearest.abs() < LARGEST_WHOLE;
     if is_whole { Ok(nearest as i64) } else { Err(format!("must be a whole number, got {number}")) }
