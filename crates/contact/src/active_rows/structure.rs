@@ -40,9 +40,9 @@ impl ActiveRows {
         self.set_structure_with_held(inertia, rows, thirds, []);
     }
 
-    /// Does as [`set_structure_with_thirds`](Self::set_structure_with_thirds), with bodies that three rows each hold wholly. These
-    /// rows are found from the others by substitution: they never depend on others, and are not soft. No other row may do without a
-    /// body that is not held, and no third side names a held one, nor one of its rows.
+    /// Does as [`set_structure_with_thirds`](Self::set_structure_with_thirds), with bodies that three rows each hold wholly. The forces
+    /// of these rows follow from those of the others: they never depend on others, and are not soft. A row on held bodies alone depends on
+    /// theirs. No third side may name a held body, nor one of its rows.
     ///
     /// # Panics
     ///

@@ -34,3 +34,88 @@ impl Group {
             .then_some(HeldBody { body, rows: [place(x)?, place(y)?, place(drive)?] })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::contacts::friction::Grip;
+    use crate::rigid::contacts::rows::ActiveRow;
+    use glam::DVec2;
+    use halfgap_collision::{Anchor, BodyId, ConnectorId, ConnectorKind, Coordinate, MotionLaw};
+    use halfgap_geometry::FeatureId;
+
+    const CRANK: BodyId = BodyId(0);
+    const WHEEL: BodyId = BodyId(1);
+
+    fn row(source: RowSource, bodies: [BodyId; 2]) -> ActiveRow {
+        ActiveRow {
+            source,
+            bodies,
+            third: None,
+            bilateral: !matches!(source, RowSource::Contact(_)),
+            gap: 0.0,
+            hint: None,
+            leans: false,
+            grips: [Grip::Smooth; 2],
+            load: [0.0; 3],
+        }
+    }
+
+    /// The held bodies of a group of a crank and a wheel that touch, held by these connectors.
+    fn held(kinds: Vec<ConnectorKind>) -> Vec<HeldBody> {
+        let connectors: Vec<_> =
+            kinds.into_iter().map(|kind| Connector::new(kind, 0.0).expect("fine numbers")).collect();
+        let joints = (0..).zip(&connectors).flat_map(|(id, connector)| {
+            (0..connector.row_count())
+                .map(move |index| row(RowSource::Connector(ConnectorId(id), index), connector.bodies()))
+        });
+        let contact = row(RowSource::Contact([FeatureId(0); 2]), [CRANK, WHEEL]);
+        let mut group = Group::default();
+        group
+            .set_members([CRANK, WHEEL].into_iter(), joints.chain([contact]).collect::<Vec<_>>().into_iter());
+        group.driven = (0..group.rows.len()).filter(|&row| group.rows[row].is_driven(&connectors)).collect();
+        group.find_sides();
+        group.held(&connectors).collect()
+    }
+
+    fn pin(a: BodyId, b: BodyId) -> ConnectorKind {
+        let [a, b] = [a, b].map(|body| Anchor { body, point: DVec2::ZERO });
+        ConnectorKind::Pin { a, b }
+    }
+
+    fn drive(a: BodyId, b: BodyId) -> ConnectorKind {
+        ConnectorKind::Drive { coordinate: Coordinate::angle(a, b), law: MotionLaw::Uniform(1.0), at: 0.0 }
+    }
+
+    #[test]
+    fn a_pin_and_a_drive_hold_a_body_that_touches_another() {
+        let (to_world, driven) = (pin(BodyId::WORLD, CRANK), drive(BodyId::WORLD, CRANK));
+        let wheel = pin(BodyId::WORLD, WHEEL);
+        let crank = HeldBody { body: 0, rows: [2, 3, 4] };
+        assert_eq!(held(vec![wheel.clone(), to_world.clone(), driven.clone()]), [crank]);
+        // Either may come first, and the sides do not matter.
+        let crank = HeldBody { body: 0, rows: [1, 2, 0] };
+        assert_eq!(
+            held(vec![drive(CRANK, BodyId::WORLD), pin(CRANK, BodyId::WORLD), wheel.clone()]),
+            [crank]
+        );
+        assert_eq!(held(vec![to_world, wheel, driven, drive(BodyId::WORLD, WHEEL)]).len(), 2);
+    }
+
+    #[test]
+    fn a_body_with_other_joints_or_on_one_that_moves_is_not_held() {
+        let (to_world, driven) = (pin(BodyId::WORLD, CRANK), drive(BodyId::WORLD, CRANK));
+        let wheel = pin(BodyId::WORLD, WHEEL);
+        let driven_wheel = drive(CRANK, WHEEL);
+        for kinds in [
+            vec![to_world.clone(), driven.clone(), pin(CRANK, WHEEL)],
+            vec![to_world.clone(), to_world.clone(), driven.clone()],
+            vec![to_world.clone(), driven.clone(), driven.clone()],
+            vec![pin(CRANK, WHEEL), driven.clone()],
+            vec![to_world, driven, driven_wheel.clone()],
+            vec![wheel, pin(CRANK, WHEEL), driven_wheel],
+        ] {
+            assert!(held(kinds.clone()).is_empty(), "{kinds:?}");
+        }
+    }
+}
