@@ -14,12 +14,14 @@
 
 mod dependence;
 mod factor;
+mod held;
 mod redundant;
 mod refining;
 mod structure;
 mod thirds;
 mod turned;
 
+pub use held::HeldBody;
 pub use thirds::ThirdSide;
 pub use turned::TurnedRows;
 
@@ -27,6 +29,7 @@ use crate::exchanges::Exchanges;
 use crate::order::RowOrder;
 use crate::settings::{DELICATE, DOUBTFUL, Settings};
 use factor::Factor;
+use held::Held;
 use refining::Refining;
 use structure::Shared;
 use thirds::Thirds;
@@ -68,6 +71,8 @@ pub struct ActiveRows {
     /// Fraction of a row's square up to which its remainder makes it dependent.
     dependence: f64,
     order: RowOrder,
+    /// The row at each place of the order.
+    row_of: Vec<u32>,
     /// Where the bodies of each row begin in `column`, for the order.
     start: Vec<usize>,
     column: Vec<u32>,
@@ -81,6 +86,7 @@ pub struct ActiveRows {
     shared: Vec<Shared>,
     shared_start: Vec<usize>,
     thirds: Thirds,
+    held: Held,
     /// L and 1/D; a row that depends on earlier ones has no pivot.
     factor: Factor,
     /// True for a row that depends on others, or on which another depends.
@@ -119,6 +125,7 @@ impl ActiveRows {
         Self {
             dependence: settings.dependence,
             order: RowOrder::default(),
+            row_of: Vec::new(),
             start: Vec::new(),
             column: Vec::new(),
             body_count: 0,
@@ -127,6 +134,7 @@ impl ActiveRows {
             shared: Vec::new(),
             shared_start: Vec::new(),
             thirds: Thirds::default(),
+            held: Held::default(),
             factor: Factor::default(),
             shares: Vec::new(),
             raise: Vec::new(),
@@ -148,14 +156,14 @@ impl ActiveRows {
     #[must_use]
     #[inline]
     pub fn len(&self) -> usize {
-        self.root.len()
+        self.root.len() + self.held.row_count()
     }
 
     /// Whether there are no rows.
     #[must_use]
     #[inline]
     pub fn is_empty(&self) -> bool {
-        self.root.is_empty()
+        self.len() == 0
     }
 
     /// Sets the coefficients of every row (x, y \[1\] and rotation \[m\] of the primary, then of the normal body) and
@@ -169,8 +177,9 @@ impl ActiveRows {
         let mut dependent = 0;
         self.is_delicate = false;
         self.shares.fill(false);
+        self.held.take_coefficients(jacobians);
         self.set_entries(jacobians);
-        for place in 0..self.len() {
+        for place in 0..self.root.len() {
             let diagonal = self.square(place);
             let raised = self.raise[place] * diagonal;
             let mut left = (diagonal + raised) - self.factor.eliminate(place);
@@ -196,7 +205,7 @@ impl ActiveRows {
         self.factor.clear();
         let entries = self.factor.entries_mut();
         for place in 0..self.root.len() {
-            let (coefficients, [p, q]) = (&jacobians[self.order.rows[place] as usize], &self.root[place]);
+            let (coefficients, [p, q]) = (&jacobians[self.row_of[place] as usize], &self.root[place]);
             let [a, b, c, d, e, f] = *coefficients;
             let mut sides = [[a * p[0], b * p[1], c * p[2]], [d * q[0], e * q[1], f * q[2]]];
             if self.bodies[place][1] == NONE {
@@ -247,6 +256,11 @@ impl ActiveRows {
     pub fn solve(&mut self, offset: &[f64], force: &mut [f64]) {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
+        self.solve_others(offset, force, Self::solve_and_refine);
+    }
+
+    #[inline]
+    fn solve_and_refine(&mut self, offset: &[f64], force: &mut [f64]) {
         self.solve_raised(offset, force);
         if !self.is_soft && !self.is_delicate {
             return;
@@ -270,11 +284,11 @@ impl ActiveRows {
     pub fn solve_roughly(&mut self, offset: &[f64], force: &mut [f64]) {
         assert_eq!(offset.len(), self.len(), "one offset per row");
         assert_eq!(force.len(), self.len(), "one force per row");
-        self.solve_raised(offset, force);
+        self.solve_others(offset, force, Self::solve_raised);
     }
 
     fn solve_raised(&mut self, offset: &[f64], force: &mut [f64]) {
-        let rows = &self.order.rows;
+        let rows = &self.row_of;
         let right = |place: usize| rows.get(place).map_or(0.0, |&row| -offset[row as usize]);
         self.factor.solve(right, |place, value| {
             if let Some(&row) = rows.get(place) {
@@ -293,7 +307,7 @@ impl ActiveRows {
     pub fn respond(&self, force: &[f64], change: &mut [[f64; 3]]) {
         assert_eq!(force.len(), self.len(), "one force per row");
         assert_eq!(change.len(), self.body_count, "one acceleration per body");
-        let rows = self.bodies.iter().zip(&self.order.rows).zip(self.jacobian.iter().zip(&self.root));
+        let rows = self.bodies.iter().zip(&self.row_of).zip(self.jacobian.iter().zip(&self.root));
         for ((bodies, &index), (row, root)) in rows {
             let push = force[index as usize];
             for ((&body, row), root) in bodies.iter().zip(row).zip(root) {
@@ -305,6 +319,7 @@ impl ActiveRows {
             }
         }
         self.respond_by_thirds(force, change);
+        self.held.respond(force, change);
     }
 }
 

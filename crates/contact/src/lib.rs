@@ -96,7 +96,7 @@ mod twofold;
 mod warm;
 mod words;
 
-pub use active_rows::{ActiveRows, ThirdSide, TurnedRows};
+pub use active_rows::{ActiveRows, HeldBody, ThirdSide, TurnedRows};
 pub use auto::Auto;
 pub use check::Residuals;
 pub use dual_active_set::DualActiveSet;

@@ -128,6 +128,66 @@ fn a_driven_linkage_is_exactly_driven_at_outputs_between_steps() {
     }
 }
 
+/// An arm that a drive swings, and a lever on a pin of its own that lies on it, now flush, now on the arm's corner.
+fn lever_on_a_driven_arm() -> World {
+    let drive = ", drive = { oscillate = { amplitude = 0.4, frequency = 0.5 } }";
+    let lever = "[[body]]\nname = \"lever\"\nshape = { block = { width = 1.6, height = 0.1 } }\nmass = 2.0\nposition = [1.6, 0.1]\n\
+                 elasticity = 0.0\n[[connector]]\npin = { a = { body = \"world\", point = [2.4, 0.1] }, b = { body = \"lever\", point = [0.8, 0.0] } }\n";
+    world_of(&(HEAD.to_owned() + &arm(drive) + lever + GRAVITY))
+}
+
+#[test]
+fn a_driven_body_in_contact_is_where_its_law_tells_and_its_forces_accelerate_it() {
+    let (mut world, arm) = (lever_on_a_driven_arm(), BodyId(0));
+    let mut contacts = 0;
+    for step in 1..=300 {
+        let time = 0.037 * f64::from(step);
+        advance(&mut world, time);
+        let (speed, state) = (TAU * 0.5, world.state(arm));
+        let (sin, cos) = (speed * time).sin_cos();
+        assert!((state.angle - 0.4 * sin).abs() <= 1e-14, "{time} s: {}", state.angle);
+        assert!((state.angular_velocity - 0.4 * speed * cos).abs() <= 1e-13, "{time} s");
+        // Newton and Euler: the pin, the drive, gravity and the lever together do what the law asks for.
+        let (mut force, mut torque) = ([0.0, -9.81], 0.0);
+        for told in world.contact_forces() {
+            let Some(side) = told.bodies.iter().position(|&body| body == arm) else { continue };
+            let sign = if side == 0 { 1.0 } else { -1.0 };
+            torque += sign * told.torque.unwrap_or(0.0);
+            let along = sign * told.force * told.normal;
+            force = [force[0] + along.x, force[1] + along.y];
+            torque += told.point.map_or(0.0, |point| (point - state.position).perp_dot(along));
+            contacts += u32::from(told.connector.is_none());
+        }
+        let (spin, turn) = (state.angular_velocity, -0.4 * speed * speed * sin);
+        let (sin, cos) = (0.5 * state.angle.sin(), 0.5 * state.angle.cos());
+        let asked = [-spin * spin * cos - turn * sin, -spin * spin * sin + turn * cos];
+        for (force, asked) in force.into_iter().zip(asked) {
+            assert!((force - asked).abs() < 1e-7, "{time} s: {force} N for {asked}");
+        }
+        let asked = turn * (1.0 + 0.01) / 12.0;
+        assert!((torque - asked).abs() < 1e-7, "{time} s: {torque} N m for {asked}");
+    }
+    let ledger = world.ledger();
+    assert!(contacts > 100, "they touch most of the time: {contacts}");
+    assert!(ledger.drives.abs() > 0.01 && ledger.integration_error().abs() < 1e-6, "{ledger:?}");
+}
+
+#[test]
+fn a_driven_body_in_contact_goes_on_with_the_same_bits_once_it_is_loaded() {
+    let (mut world, mut loaded) = (lever_on_a_driven_arm(), lever_on_a_driven_arm());
+    for step in 1..=60 {
+        let time = 0.053 * f64::from(step);
+        let bytes = loaded.save().expect("its laws are the crate's");
+        loaded = World::load(&bytes).expect("they are sound");
+        for world in [&mut world, &mut loaded] {
+            advance(world, time);
+        }
+        let told = |world: &World| format!("{:?} {:?}", world.ledger(), world.contact_forces());
+        assert_eq!(told(&world), told(&loaded), "{time} s");
+        assert_eq!(world.save(), loaded.save(), "{time} s");
+    }
+}
+
 #[test]
 fn a_limit_counts_turns_that_were_taken_out_of_angles() {
     // The group starts anew in its third turn, and then counts from there.

@@ -85,6 +85,7 @@ impl Coordinate {
     }
 
     /// Measures the row whose gap is `sign` times the coordinate less `at`, as a length.
+    #[inline]
     pub(super) fn row(&self, sign: f64, at: f64, movings: [&Moving; 2], turns: [f64; 2]) -> ConnectorSample {
         match self {
             Self::Angle { lever, .. } => {
@@ -101,6 +102,7 @@ impl Coordinate {
 }
 
 /// The row of a torque: its gap is a sum of the angles of both bodies times coefficients [m], less a constant [m].
+#[inline]
 pub(super) fn turning_row(
     coefficients: [f64; 2],
     movings: [&Moving; 2],

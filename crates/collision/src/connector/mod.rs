@@ -198,6 +198,13 @@ impl Connector {
         )
     }
 
+    /// True for a pin.
+    #[must_use]
+    #[inline]
+    pub fn is_pin(&self) -> bool {
+        matches!(self.kind, ConnectorKind::Pin { .. })
+    }
+
     /// True if the force of the connector is bounded.
     #[must_use]
     #[inline]

@@ -25,7 +25,7 @@ impl ActiveRows {
     /// more than about 1e-7 of a length does: callers farther off must move the bodies onto the rows first.
     #[inline]
     pub fn soften(&mut self, may_share: impl Fn(usize) -> bool) {
-        for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.order.rows).zip(&self.shares) {
+        for ((raise, &row), &shares) in self.raise.iter_mut().zip(&self.row_of).zip(&self.shares) {
             *raise = if shares && may_share(row as usize) { SOFTNESS } else { 0.0 };
         }
         self.is_soft = self.raise.iter().any(|&raise| raise > 0.0);
@@ -43,7 +43,7 @@ impl ActiveRows {
     #[must_use]
     #[inline]
     pub fn is_dependent(&self, row: usize) -> bool {
-        let place = self.order.rows.iter().position(|&other| other as usize == row);
+        let place = self.row_of.iter().position(|&other| other as usize == row);
         place.is_some_and(|place| !self.factor.has_pivot(place))
     }
 
@@ -61,7 +61,7 @@ impl ActiveRows {
     #[must_use]
     #[inline]
     pub fn kept_beyond(&mut self, aside: usize) -> f64 {
-        if aside >= self.len() {
+        if aside >= self.kept.len() {
             return 1.0;
         }
         self.work.clear();

@@ -30,7 +30,7 @@ impl ActiveRows {
         redundant.clear();
         let mut exchanges = std::mem::take(&mut self.exchanges);
         exchanges.clear();
-        for place in 0..self.len() {
+        for place in 0..self.root.len() {
             if self.factor.has_pivot(place) || may_pull(self.row_at(place)) {
                 continue;
             }
@@ -54,7 +54,7 @@ impl ActiveRows {
     }
 
     fn row_at(&self, place: usize) -> usize {
-        self.order.rows[place] as usize
+        self.row_of[place] as usize
     }
 
     fn party(&self, place: usize, share: f64, force: &[f64]) -> Party {

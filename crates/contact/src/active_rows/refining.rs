@@ -95,7 +95,7 @@ impl ActiveRows {
     fn softness_of(&self, force: &[f64]) -> f64 {
         let soft = self.raise.iter().enumerate().filter(|(_, raise)| **raise > 0.0);
         let part = |(place, raise): (usize, &f64)| {
-            let force = force[self.order.rows[place] as usize];
+            let force = force[self.row_of[place] as usize];
             force * force * raise * self.square(place)
         };
         soft.map(part).sum()
@@ -110,10 +110,10 @@ impl ActiveRows {
     /// A f of each row.
     fn multiply(&mut self, force: &[f64], product: &mut [f64]) {
         self.motion.fill([0.0; 3]);
-        for place in 0..self.len() {
-            self.push(place, force[self.order.rows[place] as usize]);
+        for place in 0..self.root.len() {
+            self.push(place, force[self.row_of[place] as usize]);
         }
-        for ((bodies, sides), &index) in self.bodies.iter().zip(&self.jacobian).zip(&self.order.rows) {
+        for ((bodies, sides), &index) in self.bodies.iter().zip(&self.jacobian).zip(&self.row_of) {
             let of_side = |(&body, row): (&u32, &[f64; 3])| {
                 let motion = &self.motion[body as usize];
                 (0..3).map(|k| row[k] * motion[k]).sum::<f64>()
@@ -123,7 +123,7 @@ impl ActiveRows {
         }
         for third in self.thirds.all() {
             let turning = self.motion[third.body as usize][2];
-            product[self.order.rows[third.place] as usize] += third.entry * turning;
+            product[self.row_of[third.place] as usize] += third.entry * turning;
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The structure of active rows: the rows that share a body, the order of elimination, and the layout of the factor. It
 //! does not change while the same rows are active.
 
-use super::{ActiveRows, NONE, ThirdSide};
+use super::{ActiveRows, HeldBody, NONE, ThirdSide};
 use crate::problem::InverseInertia;
 
 /// An earlier row on a common body.
@@ -37,13 +37,31 @@ impl ActiveRows {
         rows: &[[Option<u32>; 2]],
         thirds: &[ThirdSide],
     ) {
+        self.set_structure_with_held(inertia, rows, thirds, []);
+    }
+
+    /// Does as [`set_structure_with_thirds`](Self::set_structure_with_thirds), with bodies that three rows each hold wholly. The forces
+    /// of these rows follow from those of the others: they never depend on others, and are not soft. A row on held bodies alone depends on
+    /// theirs. No third side may name a held body, nor one of its rows.
+    ///
+    /// # Panics
+    ///
+    /// If a row names a body, or a third side or a held body a row or body, that does not exist.
+    pub fn set_structure_with_held(
+        &mut self,
+        inertia: &[InverseInertia],
+        rows: &[[Option<u32>; 2]],
+        thirds: &[ThirdSide],
+        held: impl IntoIterator<Item = HeldBody>,
+    ) {
         self.body_count = inertia.len();
+        self.held.set(inertia, rows, held);
         self.find_order(inertia, rows, thirds);
         self.take_thirds(inertia, thirds);
         self.bodies.clear();
         self.root.clear();
-        for place in 0..rows.len() {
-            let sides = movable(inertia, rows[self.order.rows[place] as usize]);
+        for place in 0..self.row_of.len() {
+            let sides = self.movable(inertia, rows[self.row_of[place] as usize]);
             self.root.push(roots(inertia, sides));
             // The coefficients of a body on both sides add up on the first.
             self.bodies.push(if sides[0] == sides[1] { [sides[0], NONE] } else { sides });
@@ -51,16 +69,16 @@ impl ActiveRows {
         self.list_shared();
         self.lay_out();
         self.jacobian.clear();
-        self.jacobian.resize(rows.len(), [[0.0; 3]; 2]);
+        self.jacobian.resize(self.root.len(), [[0.0; 3]; 2]);
         self.kept.clear();
-        self.kept.resize(rows.len(), 1.0);
+        self.kept.resize(self.root.len(), 1.0);
         self.shares.clear();
-        self.shares.resize(rows.len(), false);
+        self.shares.resize(self.root.len(), false);
         self.raise.clear();
-        self.raise.resize(rows.len(), 0.0);
+        self.raise.resize(self.root.len(), 0.0);
         self.is_soft = false;
         self.work.clear();
-        self.work.resize(rows.len(), 0.0);
+        self.work.resize(self.root.len(), 0.0);
         self.motion.clear();
         self.motion.resize(self.body_count, [0.0; 3]);
     }
@@ -69,14 +87,26 @@ impl ActiveRows {
         self.start.clear();
         self.start.push(0);
         self.column.clear();
-        for (index, &row) in rows.iter().enumerate() {
-            self.column.extend(movable(inertia, row).into_iter().filter(|&body| body != NONE));
-            let own = thirds.iter().filter(|third| third.row as usize == index);
+        for &row in &self.held.others {
+            let sides = self.movable(inertia, rows[row as usize]);
+            self.column.extend(sides.into_iter().filter(|&body| body != NONE));
+            let own = thirds.iter().filter(|third| third.row == row);
             let turning = own.filter(|third| inertia[third.body as usize].inverse_moment > 0.0);
             self.column.extend(turning.map(|third| third.body));
             self.start.push(self.column.len());
         }
         self.order.prepare_narrow(&self.start, &self.column, inertia.len());
+        self.row_of.clear();
+        self.row_of.extend(self.order.rows.iter().map(|&index| self.held.others[index as usize]));
+    }
+
+    /// The bodies of a row that are unknowns, `NONE` for an immovable one and for a held one.
+    fn movable(&self, inertia: &[InverseInertia], sides: [Option<u32>; 2]) -> [u32; 2] {
+        let moves = |body: &u32| {
+            let InverseInertia { inverse_mass, inverse_moment } = inertia[*body as usize];
+            (inverse_mass > 0.0 || inverse_moment > 0.0) && !self.held.contains(*body)
+        };
+        sides.map(|side| side.filter(moves).unwrap_or(NONE))
     }
 
     /// Lists the earlier rows that share a body with each side of each row.
@@ -123,15 +153,6 @@ impl ActiveRows {
         }
         self.list_crossings();
     }
-}
-
-/// The bodies of a row, `NONE` for an immovable one.
-fn movable(inertia: &[InverseInertia], sides: [Option<u32>; 2]) -> [u32; 2] {
-    sides.map(|side| match side {
-        Some(body) if inertia[body as usize].inverse_mass > 0.0 => body,
-        Some(body) if inertia[body as usize].inverse_moment > 0.0 => body,
-        _ => NONE,
-    })
 }
 
 /// Roots of the inverse masses of both sides, 0 on an immovable one.

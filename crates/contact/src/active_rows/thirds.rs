@@ -102,7 +102,7 @@ impl ActiveRows {
         self.thirds.clear();
         for third in thirds {
             let root = inertia[third.body as usize].inverse_moment.sqrt();
-            let place = self.order.rows.iter().position(|&row| row == third.row);
+            let place = self.row_of.iter().position(|&row| row == third.row);
             let place = place.expect("a third side belongs to one of the rows");
             if root > 0.0 {
                 let entry = root * third.coefficient;
@@ -139,7 +139,7 @@ impl ActiveRows {
     /// Adds what forces on rows change of the accelerations of their third bodies.
     pub(super) fn respond_by_thirds(&self, force: &[f64], change: &mut [[f64; 3]]) {
         for third in &self.thirds.all {
-            let push = force[self.order.rows[third.place] as usize];
+            let push = force[self.row_of[third.place] as usize];
             change[third.body as usize][2] += third.root * third.entry * push;
         }
     }
@@ -147,7 +147,7 @@ impl ActiveRows {
     /// Adds the rates that third sides have by the turning of a body, in units of M^(1/2), to those of all rows.
     pub(super) fn add_third_rates(&self, body: u32, turning: f64, rates: &mut [f64]) {
         for third in self.thirds.all.iter().filter(|third| third.body == body) {
-            rates[self.order.rows[third.place] as usize] += turning * third.entry;
+            rates[self.row_of[third.place] as usize] += turning * third.entry;
         }
     }
 }

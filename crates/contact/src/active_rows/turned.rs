@@ -145,7 +145,7 @@ impl TurnedRows {
 impl ActiveRows {
     /// The bodies of a row, and the roots of their inverse masses.
     fn sides_of(&self, row: u32) -> ([u32; 2], [[f64; 3]; 2]) {
-        let place = self.order.rows.iter().position(|&other| other == row);
+        let place = self.row_of.iter().position(|&other| other == row);
         place.map_or(([NONE; 2], [[0.0; 3]; 2]), |place| (self.bodies[place], self.root[place]))
     }
 
@@ -171,11 +171,12 @@ impl ActiveRows {
                     }
                 }
             }
-            rates[self.order.rows[place] as usize] = rate;
+            rates[self.row_of[place] as usize] = rate;
         }
         for (&body, side) in bodies.iter().zip(&sides).filter(|(body, _)| **body != NONE) {
             self.add_third_rates(body, side[2], rates);
         }
+        self.held.add_rates(row, direction, rates);
     }
 
     /// Adds what a force on the bodies of a row changes of their accelerations, along a direction of its own.
@@ -189,6 +190,7 @@ impl ActiveRows {
                 out[k] += root[side][k] * root[side][k] * direction[3 * side + k] * force;
             }
         }
+        self.held.push_along(row, direction, force, change);
     }
 }
 

@@ -80,7 +80,7 @@ pub(crate) fn start_group(rooms: &mut Rooms, leader: BodyId) -> Result<(), Advan
     group.add_friction(&mechanism(assembly, &rooms.connectors), |body| {
         assembly.trajectory(body).unwound_at(now)
     });
-    group.prepare(now, is_patient, &inertias);
+    group.prepare(now, is_patient, (rooms.connectors.all(), &inertias));
     rooms.groups.put_inertias(inertias);
     for place in 0..group.bodies().len() {
         let body = group.bodies()[place];

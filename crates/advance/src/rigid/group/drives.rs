@@ -17,12 +17,9 @@ use halfgap_collision::BodyId;
 impl Dynamics<'_> {
     /// Writes the powers [W] of drives and of rubbing joints. The stage has the forces of all rows, or of those beside the pins of a tree.
     pub(crate) fn note_driving_powers(&self, powers: &mut [f64]) {
-        let Group { works, rows, tree, pulls, moved, .. } = &*self.group;
+        let Group { works, rows, driven, tree, pulls, moved, .. } = &*self.group;
         let mechanism = &self.physics.mechanism;
-        let of_row = |(row, force): (usize, &f64)| {
-            let rate = mechanism.prescribed_rate(&rows[row]);
-            if rate == 0.0 { 0.0 } else { -force * rate }
-        };
+        let of_row = |row: usize, force: f64| -force * mechanism.prescribed_rate(&rows[row]);
         let of_pull = |pull: &Pull| {
             let movings = pull.bodies.map(|body| moving_of(&self.stage.movings, body));
             let prescribed = mechanism.connectors[pull.id.index()].prescribed_rate(mechanism.time);
@@ -37,9 +34,11 @@ impl Dynamics<'_> {
                 Work::Drives => {
                     let forces = &self.stage.forces;
                     let of_rows: f64 = if forces.len() < rows.len() {
-                        tree.rows_beside().zip(forces).map(of_row).sum()
+                        let beside = tree.rows_beside().zip(forces);
+                        let driven = beside.filter(|(row, _)| driven.contains(row));
+                        driven.map(|(row, &force)| of_row(row, force)).sum()
                     } else {
-                        forces.iter().enumerate().take(rows.len()).map(of_row).sum()
+                        driven.iter().map(|&row| of_row(row, forces[row])).sum()
                     };
                     let of_moved = if moved.is_empty() { 0.0 } else { self.power_of_moved() };
                     *power = of_rows + of_pulls(true) + of_moved;

@@ -100,8 +100,9 @@ impl Group {
         }
         self.list_moved(assembly, connectors);
         let pulls_on = |pull: &Pull| connectors.connector(pull.id).prescribed_rate(0.0) != 0.0;
-        let is_driven = self.rows.iter().any(|row| row.is_driven(connectors.all()));
-        if !self.moved.is_empty() || is_driven || self.pulls.iter().any(pulls_on) {
+        let Self { rows, driven, .. } = &mut *self;
+        driven.extend((0..rows.len()).filter(|&row| rows[row].is_driven(connectors.all())));
+        if !self.moved.is_empty() || !self.driven.is_empty() || self.pulls.iter().any(pulls_on) {
             self.works.push(Work::Drives);
         }
         if self.pulls.iter().any(|pull| !pulls_on(pull)) {

@@ -5,7 +5,7 @@
 //!
 //! * data: `state` (a group), `reading`, `making` (its members), `gripping` (what friction adds), `turning` (from one segment to the next), `groups` (all of
 //!   them), `stage` (buffers of one moment), `lending`, `samples`;
-//! * equations of motion: `physics`, `dynamics` in bodies, `friction`, `stress` of what is locked, `level`, `tree` in angles where bodies hang together by pins;
+//! * equations of motion: `physics`, `dynamics` in bodies, `friction`, `stress` of what is locked, what is `held`, `level`, `tree` in angles where bodies hang together by pins;
 //!   `on_rows` moves stages onto rows that depend on each other; `singular` leads steps over the bifurcation points of
 //!   closed `loops`;
 //! * one step: `attempt`; its repetition and dense output, `segment`; the errors it may make, `measures` and `inner`; its
@@ -22,6 +22,7 @@ pub(super) mod extending;
 pub(super) mod friction;
 pub(super) mod gripping;
 pub(super) mod groups;
+mod held;
 pub(super) mod inner;
 pub(super) mod kinks;
 pub(super) mod lending;

@@ -76,6 +76,8 @@ pub(crate) struct Group {
     pub(super) stops: Vec<Stop>,
     /// Motors, and dry friction in joints, that act with all their force.
     pub(super) pulls: Vec<Pull>,
+    /// Rows of coordinates that are driven, ascending.
+    pub(super) driven: Vec<usize>,
     /// Force laws that act on its bodies, ascending.
     pub(super) force_laws: Vec<usize>,
     /// Bodies that are moved and that rows, contacts without force, stops or laws of it tell of.
@@ -185,6 +187,7 @@ impl Group {
             idle: emptied(old.idle),
             stops: emptied(old.stops),
             pulls: emptied(old.pulls),
+            driven: emptied(old.driven),
             force_laws: emptied(old.force_laws),
             moved: emptied(old.moved),
             works: emptied(old.works),

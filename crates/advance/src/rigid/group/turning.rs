@@ -5,15 +5,22 @@ use crate::rigid::contacts::rows::{ActiveRow, RowSource};
 use crate::rigid::group::stage::set_body_state;
 use crate::rigid::group::state::{Group, SegmentEnd};
 use crate::time::Time;
-use halfgap_collision::{BodyId, BodyState, ConnectorId, RailHint};
+use halfgap_collision::{BodyId, BodyState, Connector, ConnectorId, RailHint};
 use halfgap_contact::InverseInertia;
 
 impl Group {
     /// Prepares the first segment, which starts at a time; `inertias` are those of the bodies.
-    pub(crate) fn prepare(&mut self, now: Time, is_patient: bool, inertias: &[InverseInertia]) {
+    pub(crate) fn prepare(
+        &mut self,
+        now: Time,
+        is_patient: bool,
+        (connectors, inertias): (&[Connector], &[InverseInertia]),
+    ) {
         (self.start, self.made, self.is_patient) = (now, now, is_patient);
         self.find_sides();
-        self.active.set_structure_with_thirds(inertias, &self.sides, &self.thirds);
+        let mut active = std::mem::take(&mut self.active);
+        active.set_structure_with_held(inertias, &self.sides, &self.thirds, self.held(connectors));
+        self.active = active;
         // The projection acts on the end of a segment: a segment of no length ends here.
         let dimension = self.dimension();
         self.end_state.clear();
