@@ -1,7 +1,7 @@
 //! Names, expressions and repetition in scene files.
 
 use halfgap::World;
-use halfgap::scene::{Scene, SceneError, SceneFormat, SceneSource, VariedScene};
+use halfgap::scene::{ConnectorRef, ProbeData, Scene, SceneError, SceneFormat, SceneSource, VariedScene};
 
 const ROW: &str = r#"format = "halfgap-scene-1"
 title = "A row of discs, two high"
@@ -132,6 +132,28 @@ rod = { a = { body = "disc {i} {n-3}", point = [0, 0] }, b = { body = "disc {i +
         parsed("A row of discs", "A {row").expect("titles are not repeated").title,
         "A {row, two high"
     );
+}
+
+#[test]
+fn a_probe_may_name_a_connector_by_an_expression() {
+    let probes = r#"[[probe]]
+repeat = { i = [0, 1] }
+name = "rod {i}"
+connector = "= 1 - i"
+"#;
+    let scene = SceneSource::new(format!("{ROW}{probes}"), SceneFormat::Toml).parse().expect("a good scene");
+    let connector = |probe: usize| match &scene.probes[probe].data {
+        ProbeData::Connector(ConnectorRef::Index(index)) => *index,
+        other => panic!("{other:?} is no place"),
+    };
+    assert_eq!([0, 1].map(connector), [1, 0]);
+}
+
+#[test]
+fn a_field_that_is_unknown_is_named_whatever_is_in_it() {
+    let text = r#"{"format": "halfgap-scene-1", "title": "dot", "run": {"duration": 1}, "body": [{"name": "dot", "shape": {"egg": null}, "mass": 1}]}"#;
+    let error = Scene::parse(text, SceneFormat::Json).expect_err("no egg is a shape").to_string();
+    assert!(error.contains("body[0].shape: unknown field `egg`"), "{error}");
 }
 
 #[test]

@@ -101,6 +101,10 @@ impl<'de> Deserializer<'de> for Reading<'_> {
         if *self.tree == Tree::Null { visitor.visit_none() } else { visitor.visit_some(self) }
     }
 
+    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_unit()
+    }
+
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -126,7 +130,7 @@ impl<'de> Deserializer<'de> for Reading<'_> {
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char bytes byte_buf unit unit_struct newtype_struct seq tuple
-        tuple_struct map identifier ignored_any
+        tuple_struct map identifier
     }
 }
 
