@@ -63,7 +63,7 @@ pub(crate) struct RunOptions {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct CheckOptions {
-    /// The scenes, .toml or .json files.
+    /// The scenes, .toml or .json files, or - for standard input.
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// Print a JSON array instead of lines.

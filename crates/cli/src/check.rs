@@ -3,8 +3,8 @@
 use crate::args::CheckOptions;
 use crate::failure::{End, Failure, describe};
 use crate::numbers::size;
-use crate::output;
-use halfgap::scene::{FieldPath, SceneError, SceneSource};
+use crate::{output, source};
+use halfgap::scene::{FieldPath, SceneError};
 use halfgap::{CheckReport, World, check as check_world};
 use serde::Serialize;
 use std::path::Path;
@@ -46,7 +46,7 @@ pub(crate) fn check(options: &CheckOptions) -> Result<End, Failure> {
 }
 
 fn check_file(path: &Path, tolerance: Option<f64>) -> Result<CheckReport, SceneError> {
-    let source = SceneSource::read(path)?;
+    let source = source::read(path, None)?;
     let mut scene = source.parse()?;
     if scene.expected.is_empty() {
         let nothing = "missing field `expected`: there is nothing to check";

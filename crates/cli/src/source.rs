@@ -48,18 +48,22 @@ impl FromStr for Setting {
     }
 }
 
+/// Reads the text of a scene from a file or from standard input.
+pub(crate) fn read(path: &Path, format: Option<TextFormat>) -> Result<SceneSource, SceneError> {
+    if path != Path::new(STANDARD_INPUT) {
+        return SceneSource::read(path);
+    }
+    let format = format.map(|format| match format {
+        TextFormat::Toml => SceneFormat::Toml,
+        TextFormat::Json => SceneFormat::Json,
+    });
+    SceneSource::read_from(std::io::stdin().lock(), format)
+}
+
 impl SceneArgs {
     /// Reads the text of the scene.
     pub(crate) fn source(&self) -> Result<SceneSource, SceneError> {
-        let source = if self.scene == Path::new(STANDARD_INPUT) {
-            let format = self.format.map(|format| match format {
-                TextFormat::Toml => SceneFormat::Toml,
-                TextFormat::Json => SceneFormat::Json,
-            });
-            SceneSource::read_from(std::io::stdin().lock(), format)?
-        } else {
-            SceneSource::read(&self.scene)?
-        };
+        let source = read(&self.scene, self.format)?;
         let set = |source: SceneSource, Setting { name, value }: &Setting| source.with_let(name, value);
         Ok(self.set.iter().fold(source, set))
     }

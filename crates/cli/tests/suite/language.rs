@@ -43,6 +43,14 @@ fn a_scene_from_standard_input_runs_with_other_values() {
 }
 
 #[test]
+fn a_scene_from_standard_input_is_checked() {
+    let expected = "[[expected]]\ntime = 1.0\nposition_tolerance = 1e-9\n[expected.bodies.\"disc 1\"]\nposition = [\"= n - 1\", 0]\n";
+    let output = with_input(&["check", "-"], &format!("{ROW}{expected}"));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.code() == Some(0) && text.starts_with("ok"), "{text}");
+}
+
+#[test]
 fn what_cannot_be_set_is_named() {
     let message = |setting: &str, text: &str| {
         let output = with_input(&["run", "-", "--set", setting], text);
