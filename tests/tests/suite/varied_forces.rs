@@ -159,7 +159,7 @@ fn what_makes_no_sense_is_refused_by_its_field() {
     line 11: force[0].push.vary.table: must have a value for each of at least one time, got 2 times and 1 values
     line 11: force[0].push.vary.table: must have times that grow, got 1 s after 1 s
     line 11: force[0].push.vary.sine: must have finite numbers
-    line 11: force[0].push.vary: must have exactly one key, found `on` and `sine`
+    line 11: force[0].push.vary: must have exactly one key, found `sine` and `on`
     line 11: force[0].push.vary: unknown field `ramp`, expected one of `sine`, `table`, `on`
     line 11: force[0].torsion_spring: ties "bar" to itself; `a` and `b` must be two bodies
     line 11: force[0].torsion_spring.b: there is no body named "wheel"
