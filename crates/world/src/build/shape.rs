@@ -53,25 +53,23 @@ pub(super) fn build_shape(shape: &ShapeData) -> Result<Shape, ShapeError> {
 
 fn teeth_of_wheel(gear: &GearShapeData) -> Teeth {
     let common = Teeth::common(gear.module, gear.teeth);
-    Teeth {
-        pressure_angle: gear.pressure_angle.unwrap_or(common.pressure_angle),
-        addendum: gear.addendum.unwrap_or(common.addendum),
-        dedendum: gear.dedendum.unwrap_or(common.dedendum),
-        backlash: gear.backlash,
-        root_radius: gear.root_radius,
-        tolerance: gear.tolerance.unwrap_or(common.tolerance),
-        ..common
-    }
+    let tolerance = gear.tolerance.unwrap_or(common.tolerance);
+    let common = Teeth { backlash: gear.backlash, root_radius: gear.root_radius, tolerance, ..common };
+    with_profile(common, [gear.pressure_angle, gear.addendum, gear.dedendum])
 }
 
 fn teeth_of_rack(rack: &RackBarData) -> Teeth {
     let common = Teeth::common(rack.module, rack.teeth);
+    let common = Teeth { backlash: rack.backlash, root_radius: rack.root_radius, ..common };
+    with_profile(common, [rack.pressure_angle, rack.addendum, rack.dedendum])
+}
+
+/// Teeth with the pressure angle, addendum and dedendum that are given.
+fn with_profile(common: Teeth, [pressure_angle, addendum, dedendum]: [Option<f64>; 3]) -> Teeth {
     Teeth {
-        pressure_angle: rack.pressure_angle.unwrap_or(common.pressure_angle),
-        addendum: rack.addendum.unwrap_or(common.addendum),
-        dedendum: rack.dedendum.unwrap_or(common.dedendum),
-        backlash: rack.backlash,
-        root_radius: rack.root_radius,
+        pressure_angle: pressure_angle.unwrap_or(common.pressure_angle),
+        addendum: addendum.unwrap_or(common.addendum),
+        dedendum: dedendum.unwrap_or(common.dedendum),
         ..common
     }
 }
